@@ -27,7 +27,11 @@ void passo_gcode_copy(const struct passo_gcode *gcode, const int64_t *from, int6
 
 static void clear_job(struct passo_gcode *gcode)
 {
-	gcode->job = (struct passo_gcode_job){.probe = PASSO_GCODE_NONE};
+	struct passo_gcode_job *job = &gcode->job;
+
+	job->output = job->dwell = job->offsets = job->via = job->motion = job->pause = job->end = false;
+	job->turns = false;
+	job->probe = PASSO_GCODE_NONE;
 }
 
 void passo_gcode_open(struct passo_gcode *gcode, const struct passo_gcode_settings *settings)
@@ -137,6 +141,10 @@ static enum passo_gcode_error begin(
 	check->gcode = gcode;
 	check->job = &gcode->job;
 	check->unused = check->block.words;
+	check->moves = false;
+	check->feed = check->inverse = 0;
+	check->tolerance = 0;
+	check->system = 0;
 	check->axis_words = check->block.words & passo_gcode_axis_words(gcode->settings.axes);
 	for (unsigned group = 0; group < PASSO_GCODE_MODES; group++) {
 		const passo_gcode_command given = check->block.command[group];
@@ -157,7 +165,7 @@ static enum passo_gcode_error finish(struct passo_gcode_check *check, enum passo
 
 enum passo_gcode_error passo_gcode_execute(struct passo_gcode *gcode, const char *text)
 {
-	struct passo_gcode_check check = {.feed = 0};
+	struct passo_gcode_check check;
 	const enum passo_gcode_error error = finish(&check, begin(gcode, &check, text));
 
 	if (error == PASSO_GCODE_OK)
@@ -171,7 +179,7 @@ enum passo_gcode_error passo_gcode_jog(struct passo_gcode *gcode, const char *te
 {
 	const uint32_t known =
 	    passo_gcode_axis_words(gcode->settings.axes) | PASSO_GCODE_WORD('F') | PASSO_GCODE_WORD('N');
-	struct passo_gcode_check check = {.feed = 0};
+	struct passo_gcode_check check;
 	enum passo_gcode_error error = begin(gcode, &check, text);
 
 	for (unsigned group = 0; group < PASSO_GCODE_GROUPS; group++) {

@@ -80,6 +80,8 @@ bool passo_gcode_next(struct passo_gcode *gcode, struct passo_gcode_action *acti
 {
 	struct passo_gcode_job *job = &gcode->job;
 
+	if (!passo_gcode_is_busy(gcode))
+		return false;
 	*action = (struct passo_gcode_action){
 	    .line = gcode->line, .output = passo_gcode_output(gcode), .probe = PASSO_GCODE_NONE};
 	if (take(&job->output)) {
@@ -97,12 +99,11 @@ bool passo_gcode_next(struct passo_gcode *gcode, struct passo_gcode_action *acti
 		next_of_motion(gcode, action);
 	} else if (take(&job->pause)) {
 		action->kind = PASSO_GCODE_PAUSE;
-	} else if (take(&job->end)) {
+	} else {
+		job->end = false;
 		action->kind = PASSO_GCODE_END;
 		end_program(gcode);
 		action->output = passo_gcode_output(gcode);
-	} else {
-		return false;
 	}
 	return true;
 }

@@ -5,7 +5,8 @@
 
 #include <stddef.h>
 
-#define INTEGER_MAX INT64_C(999999999)
+#define INTEGER_MAX UINT32_C(999999999)
+#define PLACES 6u
 #define TENTH (PASSO_GCODE_MILLION / 10u)
 
 /* Properties of a command. */
@@ -107,29 +108,29 @@ bool passo_gcode_number(const char **text, int64_t *millionths)
 {
 	const char *at = *text;
 	const bool negative = *at == '-';
-	int64_t whole = 0, fraction = 0;
+	uint32_t whole = 0, fraction = 0, places = 0;
 
 	if (*at == '-' || *at == '+')
 		at++;
 	if (!is_digit(*at) && !(*at == '.' && is_digit(at[1])))
 		return false;
 	for (; is_digit(*at); at++) {
-		whole = 10 * whole + (*at - '0');
-		if (whole > INTEGER_MAX)
+		if (whole > INTEGER_MAX / 10)
 			return false;
+		whole = 10 * whole + (uint32_t)(*at - '0');
 	}
 	if (*at == '.') {
-		int64_t place = PASSO_GCODE_MILLION;
-
-		for (at++; is_digit(*at); at++) {
-			fraction += (*at - '0') * (place / 10);
-			if (place == 1 && *at >= '5')
+		for (at++; is_digit(*at); at++, places++) {
+			if (places < PLACES)
+				fraction = 10 * fraction + (uint32_t)(*at - '0');
+			else if (places == PLACES && *at >= '5')
 				fraction++;
-			place /= 10;
 		}
 	}
+	for (; places < PLACES; places++)
+		fraction *= 10;
 	*text = at;
-	*millionths = whole * PASSO_GCODE_MILLION + fraction;
+	*millionths = (int64_t)whole * PASSO_GCODE_MILLION + fraction;
 	if (negative)
 		*millionths = -*millionths;
 	return true;

@@ -33,6 +33,9 @@ uint64_t passo_divide(struct passo_u128 a, uint64_t divisor, uint64_t *remainder
 uint64_t passo_mul_div(uint64_t a, uint64_t b, uint64_t divisor);
 uint64_t passo_mul_div_ceil(uint64_t a, uint64_t b, uint64_t divisor);
 
+/* a * b / 2^bits, rounded down, without a division; bits below 64; saturates likewise. */
+uint64_t passo_mul_shift(uint64_t a, uint64_t b, uint32_t bits);
+
 /* floor(sqrt(a)) */
 uint32_t passo_isqrt64(uint64_t a);
 uint64_t passo_isqrt128(struct passo_u128 a);

@@ -2,6 +2,8 @@
  * The lines of a path: a ring of items, with three places in it. Items before `planned` have been passed by
  * the ramps, those before `sent` have been handed out as lines; `added` is the number of those known.
  */
+#include <stddef.h>
+
 #include "passo_path_private.h"
 
 /* A line that takes longer than so many can be sent in is not merged. */
@@ -52,6 +54,7 @@ static enum passo_plan_error add(struct passo_path_planner *path, const struct p
 	path->before = before;
 	path->begins = path->rest;
 	path->feed = move->feed;
+	path->wanted = item->feed;
 	path->bulge = 0;
 	passo_path_pace_line(path, item);
 	passo_path_limit(path, path->added);
@@ -63,6 +66,7 @@ static enum passo_plan_error add(struct passo_path_planner *path, const struct p
 	path->dwell = 0;
 	path->added++;
 	path->open = true;
+	path->waits = path->waits && path->unsettled > 0 && path->added - path->planned < path->capacity;
 	if (path->tolerance == 0 || passo_path_clocks(item) >= (uint64_t)LINES_MERGED * path->line_clocks)
 		passo_path_close(path); /* too long for that to be of use */
 	return PASSO_PLAN_OK;
@@ -87,21 +91,21 @@ static bool merge(struct passo_path_planner *path, const struct passo_path_move 
 {
 	if (!is_open(path, move))
 		return false;
+	uint64_t bulge = path->bulge;
+	if (passo_path_off(path, move->target, &bulge) >= path->tolerance)
+		return false;
 	const struct passo_path_place at = path->at;
 	const uint32_t dwell = path->dwell;
 
 	path->at = path->before;
-	uint64_t bulge = path->bulge;
-	if (passo_path_off(path, move->target, &at, &bulge) < path->tolerance) {
-		path->added--;
-		path->rest = path->begins;
-		path->dwell = passo_path_item(path, path->added)->dwell;
-		if (add(path, move) == PASSO_PLAN_OK) {
-			path->bulge = bulge;
-			return true;
-		}
-		path->added++;
+	path->added--;
+	path->rest = path->begins;
+	path->dwell = passo_path_item(path, path->added)->dwell;
+	if (add(path, move) == PASSO_PLAN_OK) {
+		path->bulge = bulge;
+		return true;
 	}
+	path->added++;
 	path->at = at;
 	path->rest = false;
 	path->dwell = dwell;
@@ -135,6 +139,7 @@ void passo_path_dwell(struct passo_path_planner *path, uint64_t clocks)
 
 	path->dwell = (uint32_t)passo_path_smaller(ticks, UINT32_MAX);
 	path->rest = true;
+	path->waits = false;
 	path->final = path->added;
 }
 
@@ -151,20 +156,18 @@ bool passo_path_rests_after(const struct passo_path_planner *path, uint32_t inde
 	    || passo_path_item(path, index + 1)->rest;
 }
 
+/* At the end of an item, which `next` follows, unless it is the newest one. */
+static uint64_t end_square(const struct passo_path_item *item, const struct passo_path_item *next)
+{
+	if (!item->last && next != NULL && !next->rest)
+		return next->reach;
+	return item->last || (next != NULL && next->dwell > 0) ? passo_path_halt(item) : 0;
+}
+
 uint64_t passo_path_end_square(const struct passo_path_planner *path, uint32_t index)
 {
-	const struct passo_path_item *item = passo_path_item(path, index);
-
-	const uint64_t halt = passo_path_halt(item);
-
-	if (item->last)
-		return halt;
-	if (index + 1 == path->added)
-		return 0;
-	const struct passo_path_item *next = passo_path_item(path, index + 1);
-	if (next->rest)
-		return next->dwell > 0 ? halt : 0;
-	return next->reach;
+	return end_square(
+	    passo_path_item(path, index), index + 1 == path->added ? NULL : passo_path_item(path, index + 1));
 }
 
 bool passo_path_is_settled(const struct passo_path_planner *path, uint32_t index)
@@ -173,14 +176,16 @@ bool passo_path_is_settled(const struct passo_path_planner *path, uint32_t index
 }
 
 /* Highest square at the start of an item from which the path can come to rest. */
-static uint64_t reach_of(const struct passo_path_planner *path, uint32_t index)
+static uint64_t reach_of(const struct passo_path_planner *path, uint32_t index,
+    const struct passo_path_item *item, const struct passo_path_item *next)
 {
-	const struct passo_path_item *item = passo_path_item(path, index);
-	const uint64_t end = passo_path_end_square(path, index), length = (uint64_t)item->substeps << 32;
+	const uint64_t end = end_square(item, next), length = (uint64_t)item->substeps << 32;
 	const uint64_t behind = passo_path_flat(path, index + 1, index, end);
 	const uint64_t flat =
 	    passo_path_smaller(behind + passo_path_flat(path, index, index, item->corner), length);
-	const uint64_t most = passo_path_before(item, end, length - flat, behind);
+	const uint64_t most = flat == 0 && passo_path_halves(item) == 1
+	                        ? end + passo_path_fall(item, end)
+	                        : passo_path_before(item, end, length - flat, behind);
 	const uint64_t reach = passo_path_smaller(item->corner, most);
 
 	/* what was possible with fewer lines still is */
@@ -191,19 +196,23 @@ static uint64_t reach_of(const struct passo_path_planner *path, uint32_t index)
 void passo_path_look_back(struct passo_path_planner *path)
 {
 	uint32_t final = path->final;
+	const struct passo_path_item *next = NULL;
+	struct passo_path_item *item = passo_path_item(path, path->added);
 
 	for (uint32_t index = path->added; index-- > path->planned && index >= path->final;) {
-		struct passo_path_item *item = passo_path_item(path, index);
-		const uint64_t reach =
-		    passo_path_is_soft(path) ? passo_path_soft_reach(path, index) : reach_of(path, index);
+		item = (item == path->items ? item + path->capacity : item) - 1;
+		const uint64_t reach = passo_path_is_soft(path) ? passo_path_soft_reach(path, index)
+		                                                : reach_of(path, index, item, next);
 
 		if ((reach == item->corner || item->rest) && final < index)
 			final = index;
 		if (reach == item->reach && index + 1 < path->added && !path->anew)
 			break;
 		item->reach = reach;
+		next = item;
 	}
 	path->final = final;
+	path->waits = path->waits && !path->anew && path->unsettled >= path->final;
 	path->anew = false;
 }
 

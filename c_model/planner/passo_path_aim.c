@@ -32,7 +32,9 @@ static bool is_due(const struct passo_path_planner *path, const struct passo_pat
 {
 	if (passo_path_is_held_back(path, index))
 		return false;
-	if (need == PASSO_PATH_DRY || part->kind != PASSO_PATH_DOWN || passo_path_is_settled(path, index))
+	if (need == PASSO_PATH_DRY || passo_path_is_settled(path, index))
+		return true;
+	if (part->kind != PASSO_PATH_DOWN && (need == PASSO_PATH_FULL || !part->early))
 		return true;
 	return need == PASSO_PATH_FULL
 	    && (index == path->planned || passo_path_ticks_to(path, aim) < TICKS_MIN);
@@ -93,6 +95,7 @@ static struct passo_path_aim find_aim(
 		for (unsigned i = 0; i < count; i++) {
 			if (!is_due(path, &aim, index, &parts[i], need)) {
 				aim.open = true;
+				aim.index = passo_path_is_held_back(path, index) ? 0 : index;
 				return aim;
 			}
 			if (is_enough(path, &aim, &parts[i]))

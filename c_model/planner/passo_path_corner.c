@@ -14,7 +14,8 @@ static uint64_t half_arc(const struct passo_path_planner *path, uint64_t turn)
 	const uint64_t cosine = passo_isqrt64(turn / 4); /* of half the angle between the lines */
 	const uint64_t sine = passo_isqrt64(one - passo_path_smaller(turn / 4, one));
 
-	return passo_mul_div(path->deviation, 2 * sine * (PASSO_PATH_ONE + sine) / cosine, PASSO_PATH_ONE);
+	return passo_mul_shift(
+	    path->deviation, 2 * sine * (PASSO_PATH_ONE + sine) / cosine, PASSO_PATH_UNIT_BITS);
 }
 
 static struct passo_path_rounding rounding_of(uint64_t arc, uint64_t before, uint64_t behind)
@@ -30,18 +31,21 @@ static struct passo_path_rounding rounding_of(uint64_t arc, uint64_t before, uin
 static void bend_lines(const struct passo_path_planner *path, const int32_t *unit, uint64_t length,
     const struct passo_path_rounding *rounding, struct passo_path_item *item)
 {
-	const uint64_t over = passo_path_larger(rounding->before + rounding->behind, 1);
+	const uint64_t inverse = passo_divide(
+	    (struct passo_u128){1, 0}, passo_path_larger(rounding->before + rounding->behind, 1), NULL);
 	struct passo_path_item *last = passo_path_item(path, path->added - 1);
 	int64_t curvature[PASSO_AXES_MAX];
 
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
 		const int64_t turn = (int64_t)unit[axis] - path->at.direction[axis];
-		const int64_t size = (int64_t)passo_mul_div(passo_path_size(turn), UINT64_C(1) << 34, over);
+		const int64_t size = (int64_t)passo_path_smaller(
+		    passo_mul_shift(passo_path_size(turn), inverse, 30), PASSO_PATH_SQUARE_MAX / 2);
 
 		curvature[axis] = turn < 0 ? -size : size;
 	}
 	if (rounding->before >= path->at.length / 2)
 		passo_path_bend(path, curvature, path->at.direction, 1, last);
+	passo_path_set_fall(last);
 	if (rounding->behind >= length / 2)
 		passo_path_bend(path, curvature, unit, 0, item);
 }
@@ -140,7 +144,7 @@ uint64_t passo_path_limit_corner(
 		return passo_path_shaped_corner(path, &corner, unit, item);
 	const uint64_t square = passo_path_corner_square(path, &corner, NULL);
 #ifndef PASSO_WITHOUT_ROUNDING
-	if (!path->unrounded)
+	if (passo_path_is_rounded(path))
 		find_rounding(path, unit, length, &corner.rounding, corner.over, square, item);
 #endif
 	return square;

@@ -15,34 +15,35 @@
 /* Components of the unit vector below this share are left out: their limit is that of the corner. */
 #define SHARE_MIN (UINT32_C(1) << (PASSO_PATH_UNIT_BITS - 8))
 #define BEND_BITS 48u
+
 #define PACKED_BITS 26u
+#define EXPONENT_BITS (32u - PACKED_BITS)
 
 static uint32_t packed(uint64_t value)
 {
 	const uint32_t bits = passo_bits((struct passo_u128){0, value});
 	const uint32_t right = bits > PACKED_BITS ? bits - PACKED_BITS : 0;
 
-	return (uint32_t)(value >> right << (32 - PACKED_BITS)) | right;
+	return (uint32_t)(value >> right << EXPONENT_BITS) | right;
 }
 
 static uint64_t unpacked(uint32_t value)
 {
-	return (uint64_t)(value >> (32 - PACKED_BITS)) << (value % (1u << (32 - PACKED_BITS)));
+	return (uint64_t)(value >> EXPONENT_BITS) << (value % (1u << EXPONENT_BITS));
 }
 
-/* B w */
-static uint64_t taken(uint64_t bend, uint64_t square)
+/* A - B w, not below 0 */
+static uint64_t left_by(uint32_t most, uint32_t bend, uint64_t square)
 {
-	const struct passo_u128 product = passo_multiply(bend, square);
+	const uint64_t a = unpacked(most), taken = passo_mul_shift(square, unpacked(bend), BEND_BITS);
 
-	return product.high >> (BEND_BITS - 2) > 0
-	         ? PASSO_PATH_SQUARE_MAX
-	         : product.high << (64 - BEND_BITS) | product.low >> BEND_BITS;
+	return a > taken ? a - taken : 0;
 }
 
-static uint64_t less(uint64_t a, uint64_t b)
+void passo_path_add_slope(struct passo_path_item *item, uint32_t axis, uint32_t share, uint64_t slope)
 {
-	return a > b ? a - b : 0;
+	if (share >= SHARE_MIN)
+		item->curve.slope[axis] = packed(slope);
 }
 
 void passo_path_bend(const struct passo_path_planner *path, const int64_t *curvature, const int32_t *unit,
@@ -52,73 +53,114 @@ void passo_path_bend(const struct passo_path_planner *path, const int64_t *curva
 
 	if (passo_path_shape(path) != PASSO_SHAPE_LINEAR)
 		return;
-	curve->halved = !path->unrounded;
+	curve->halved = passo_path_is_rounded(path);
 	half = passo_path_halves(item) > 1 ? half : 0;
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		const uint64_t share = passo_path_size(unit[axis]);
+		const uint32_t share = passo_path_size32(unit[axis]);
 
-		if (share < SHARE_MIN)
+		if (curvature[axis] == 0 || share < SHARE_MIN)
 			continue;
-		const uint64_t slope =
-		    passo_mul_div(2 * path->axis[axis].acceleration, PASSO_PATH_ONE, share);
 		const uint64_t bend =
-		    passo_mul_div(2 * passo_path_size(curvature[axis]), PASSO_PATH_ONE, share);
+		    passo_path_along(2 * passo_path_size(curvature[axis]), passo_path_inverse(share));
 		const bool helps = (curvature[axis] < 0) == (unit[axis] < 0);
 
-		curve->slope[axis] = packed(slope);
 		if (bend > unpacked(curve->bend[half][axis]))
 			curve->bend[half][axis] = packed(bend);
 		(helps ? curve->helps : curve->hinders)[half] |= (uint8_t)(1u << axis);
 	}
 }
 
-/* Where more speed leaves less: the slope with what is left at the upper end, (A - B w) / (1 + B l). */
-static uint64_t less_slope(uint64_t most, uint64_t bend, uint64_t low, uint64_t length)
-{
-	const struct passo_u128 product = passo_multiply(bend, length); /* UQ.80 */
-	const uint64_t grows =
-	    product.high >= UINT64_C(1) << 40 ? UINT64_C(1) << 63 : product.high << 22 | product.low >> 42;
+/* A curve over a length. */
+struct growth {
+	uint64_t grows; /* B l, UQ.38 */
+	uint32_t
+	    reciprocal; /* of 1 + B l: by a divisor of 16 bits, rounded up, so that it is never too steep */
+	uint32_t shift;
+};
 
-	/* by a divisor of 16 bits, rounded up: a division of 32 bits, and never too steep */
+static struct growth growth_over(uint32_t bend, uint64_t length)
+{
+	const uint64_t grows =
+	    passo_path_smaller(passo_mul_shift(unpacked(bend), length, 42), UINT64_C(1) << 63);
 	const uint64_t divisor = (UINT64_C(1) << 38) + grows;
 	const uint32_t right = passo_bits((struct passo_u128){0, divisor}) - 16;
-	const uint32_t reciprocal = UINT32_MAX / ((uint32_t)(divisor >> right) + 1);
-	const struct passo_u128 quotient = passo_multiply(less(most, taken(bend, low)), reciprocal);
 
-	return quotient.high << (64 - (right - 6)) | quotient.low >> (right - 6);
+	return (struct growth){grows, UINT32_MAX / ((uint32_t)(divisor >> right) + 1), right - 6};
 }
 
 uint64_t passo_path_slope(
     const struct passo_path_item *item, unsigned half, bool up, uint64_t low, uint64_t length)
 {
 	const struct passo_path_curve *curve = &item->curve;
-	const uint32_t limited = up ? curve->helps[half] : curve->hinders[half];
 	uint64_t slope = item->slope;
 
-	for (uint32_t axis = 0; axis < PASSO_PATH_AXES_MAX; axis++) {
+	for (uint32_t axis = 0, axes = (up ? curve->helps : curve->hinders)[half]; axes > 0;
+	    axis++, axes /= 2) {
+		if (axes % 2 == 0)
+			continue;
 		const uint32_t bend = curve->bend[half][axis];
+		const struct growth growth = growth_over(bend, length);
+		const uint64_t left = left_by(curve->slope[axis], bend, low);
 
-		if (bend > 0 && (limited >> axis & 1u) > 0)
-			slope = passo_path_smaller(
-			    slope, less_slope(unpacked(curve->slope[axis]), unpacked(bend), low, length));
+		/* where more speed leaves less: with what is left at the upper end, (A - B w) / (1 + B l) */
+		slope = passo_path_smaller(slope, passo_mul_shift(left, growth.reciprocal, growth.shift));
 	}
-	slope = passo_path_larger(slope, 1);
-	return up ? slope : slope - slope / 256;
+	return passo_path_larger(slope, 1);
+}
+
+void passo_path_set_fall(struct passo_path_item *item)
+{
+	struct passo_path_curve *curve = &item->curve;
+	const uint64_t length = (uint64_t)item->substeps << 32;
+	uint64_t fall = UINT64_MAX, loss = 0;
+
+	if (passo_path_halves(item) > 1)
+		return;
+	for (uint32_t axis = 0, axes = curve->hinders[0]; axes > 0; axis++, axes /= 2) {
+		if (axes % 2 == 0)
+			continue;
+		const struct growth growth = growth_over(curve->bend[0][axis], length);
+		const uint64_t slope =
+		    passo_mul_shift(unpacked(curve->slope[axis]), growth.reciprocal, growth.shift);
+
+		fall = passo_path_smaller(fall, passo_path_gain(passo_path_down(slope), length));
+		loss = passo_path_larger(
+		    loss, passo_mul_shift(growth.grows, growth.reciprocal, growth.shift + 6));
+	}
+	curve->fall = packed(fall);
+	curve->loss = (uint32_t)passo_path_smaller(passo_path_down(loss) + 1, UINT32_MAX);
+}
+
+uint64_t passo_path_fall(const struct passo_path_item *item, uint64_t end)
+{
+	const uint64_t slope = passo_path_down(item->slope);
+	const uint64_t high = passo_path_smaller((slope >> 32) * item->substeps, PASSO_PATH_SQUARE_MAX >> 32);
+	const uint64_t straight =
+	    passo_path_smaller((high << 32) + (slope & UINT32_MAX) * item->substeps, PASSO_PATH_SQUARE_MAX);
+
+	if (item->curve.hinders[0] == 0)
+		return straight;
+	/* of several axes it takes the least and the greatest loss, so it is never too steep */
+	const uint64_t fall = unpacked(item->curve.fall), lost = ((end >> 32) + 1) * item->curve.loss;
+	return fall > lost ? passo_path_smaller(straight, fall - lost) : 0;
 }
 
 uint64_t passo_path_before(const struct passo_path_item *item, uint64_t end, uint64_t length, uint64_t behind)
 {
 	const unsigned halves = passo_path_halves(item);
 	const uint64_t half = (uint64_t)item->substeps << 31;
-	const uint64_t second = halves > 1 ? passo_path_smaller(less(half, behind), length) : length;
-	uint64_t square =
-	    end + passo_path_gain(passo_path_slope(item, halves - 1, false, end, second), second);
+	const uint64_t second =
+	    halves > 1 ? passo_path_smaller(half > behind ? half - behind : 0, length) : length;
+	uint64_t square = end
+	                + passo_path_gain(
+			    passo_path_down(passo_path_slope(item, halves - 1, false, end, second)), second);
 
 	if (second < length) {
 		const uint64_t first = length - second;
 
 		square = passo_path_smaller(square, passo_path_larger(item->top, end));
-		square += passo_path_gain(passo_path_slope(item, 0, false, square, first), first);
+		square +=
+		    passo_path_gain(passo_path_down(passo_path_slope(item, 0, false, square, first)), first);
 	}
 	return square;
 }

@@ -9,14 +9,16 @@
 /* Bits of the longest component before the length is computed: the sum of eight squares has 64. */
 #define COMPONENT_BITS 30u
 
-/* Unit vector and length (UQ32.16 substeps; saturates) of a line; false: it has no length. */
-static bool find_direction(
-    const struct passo_path_planner *path, const int64_t *target, int32_t *unit, uint64_t *length)
+/* Unit vector and length (UQ32.16 substeps; saturates) of a line between two targets; false: it has no
+ * length.
+ */
+static bool find_direction(const struct passo_path_planner *path, const int64_t *from, const int64_t *target,
+    int32_t *unit, uint64_t *length)
 {
 	uint64_t longest = 0, sum = 0;
 
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
-		longest = passo_path_larger(longest, passo_path_size(target[axis] - path->at.target[axis]));
+		longest = passo_path_larger(longest, passo_path_size(target[axis] - from[axis]));
 	if (longest == 0)
 		return false;
 	const uint32_t bits = passo_bits((struct passo_u128){0, longest});
@@ -25,15 +27,15 @@ static bool find_direction(
 	uint32_t size[PASSO_AXES_MAX];
 
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		size[axis] =
-		    (uint32_t)(passo_path_size(target[axis] - path->at.target[axis]) >> right << left);
+		size[axis] = (uint32_t)(passo_path_size(target[axis] - from[axis]) >> right << left);
 		sum += (uint64_t)size[axis] * size[axis];
 	}
 	const uint32_t root = passo_isqrt64(sum);
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		const int32_t share = (int32_t)(((uint64_t)size[axis] << PASSO_PATH_UNIT_BITS) / root);
+		const int32_t share =
+		    size[axis] > 0 ? (int32_t)(((uint64_t)size[axis] << PASSO_PATH_UNIT_BITS) / root) : 0;
 
-		unit[axis] = target[axis] < path->at.target[axis] ? -share : share;
+		unit[axis] = target[axis] < from[axis] ? -share : share;
 	}
 	/* Q31.32 mm times substeps per mm, less 16 bits */
 	const uint64_t product = (uint64_t)root * path->substeps_per_mm;
@@ -47,13 +49,13 @@ static bool find_direction(
 /* The path that a line replaces is below a parabola over it, `bulge` x (l - x). If that is so of the last
  * line, it is of the one to a new end, for a parabola that is also above the end of the last one: so it is
  * above the line from there to the new end. */
-uint64_t passo_path_off(const struct passo_path_planner *path, const int64_t *target,
-    const struct passo_path_place *end, uint64_t *bulge)
+uint64_t passo_path_off(const struct passo_path_planner *path, const int64_t *target, uint64_t *bulge)
 {
+	const struct passo_path_place *end = &path->at;
 	int32_t unit[PASSO_AXES_MAX];
 	uint64_t length = 0, turn = 0;
 
-	if (!find_direction(path, target, unit, &length) || length <= end->length)
+	if (!find_direction(path, path->before.target, target, unit, &length) || length <= end->length)
 		return UINT64_MAX;
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
 		const uint64_t change = passo_path_size((int64_t)unit[axis] - end->direction[axis]);
@@ -63,7 +65,7 @@ uint64_t passo_path_off(const struct passo_path_planner *path, const int64_t *ta
 	turn = ((uint64_t)passo_isqrt64(turn) + 1) << 32;
 	*bulge = passo_path_larger(
 	    turn / (length - end->length), passo_mul_div(*bulge, end->length, length) + turn / length);
-	return passo_mul_div(passo_mul_div(*bulge, length, PASSO_PATH_ONE), length, UINT64_C(1) << 34);
+	return passo_mul_shift(passo_mul_shift(*bulge, length, PASSO_PATH_UNIT_BITS), length, 34);
 }
 
 /* Steps of each axis, by rounding the target; returns the most. */
@@ -95,10 +97,12 @@ static uint64_t shaped_slope(const struct passo_path_planner *path, uint64_t slo
 static void limit_line(
     const struct passo_path_planner *path, const int32_t *unit, uint64_t feed, struct passo_path_item *item)
 {
-	const uint64_t wanted =
-	    feed < PASSO_PATH_RAPID
-		? passo_path_larger(1, passo_mul_div(feed, path->substeps_per_mm, path->machine.clock_hz))
-		: PASSO_PATH_SPEED_MAX;
+	uint64_t wanted = PASSO_PATH_SPEED_MAX;
+
+	if (feed == path->feed && feed < PASSO_PATH_RAPID)
+		wanted = path->wanted;
+	else if (feed < PASSO_PATH_RAPID)
+		wanted = passo_path_larger(1, passo_path_velocity(path, feed));
 	uint64_t speed = PASSO_PATH_SPEED_MAX;
 	uint64_t slope = 2 * path->acceleration, weakest = slope, jump = PASSO_PATH_SPEED_MAX,
 		 jerk = UINT64_MAX;
@@ -109,12 +113,15 @@ static void limit_line(
 
 		if (share == 0)
 			continue;
-		speed = passo_path_smaller(speed, ((uint64_t)own->speed << PASSO_PATH_UNIT_BITS) / share);
-		slope =
-		    passo_path_smaller(slope, passo_mul_div(2 * own->acceleration, PASSO_PATH_ONE, share));
+		const uint64_t inverse = passo_path_inverse(share);
+		const uint64_t most = passo_path_along(2 * own->acceleration, inverse);
+		passo_path_add_slope(item, axis, share, most);
+		slope = passo_path_smaller(slope, most);
 		weakest = passo_path_smaller(weakest, 2 * own->acceleration);
-		jump = passo_path_smaller(jump, ((uint64_t)own->jump << PASSO_PATH_UNIT_BITS) / share);
-		jerk = passo_path_smaller(jerk, passo_mul_div(own->jerk, PASSO_PATH_ONE, share));
+		speed = passo_path_smaller(speed, passo_path_along(own->speed, inverse));
+		jump = own->jump > 0 ? passo_path_smaller(jump, passo_path_along(own->jump, inverse)) : 0;
+		if (passo_path_is_soft(path))
+			jerk = passo_path_smaller(jerk, passo_path_along(own->jerk, inverse));
 	}
 	item->feed = (uint32_t)passo_path_smaller(wanted, PASSO_PATH_SPEED_MAX);
 	item->rapid = feed == PASSO_PATH_RAPID;
@@ -144,7 +151,7 @@ enum passo_plan_error passo_path_measure(
 		    || move->target[axis] <= -PASSO_PATH_TARGET_MAX)
 			return PASSO_PLAN_TOO_FAR;
 	}
-	if (!find_direction(path, move->target, unit, &length))
+	if (!find_direction(path, path->at.target, move->target, unit, &length))
 		return PASSO_PLAN_OK;
 	const uint64_t most = find_steps(path, move->target, steps);
 	if (length >> 16 > PASSO_SUBSTEPS_MAX)
@@ -163,6 +170,7 @@ enum passo_plan_error passo_path_measure(
 		item->bend = passo_path_limit_corner(path, unit, length, item);
 	passo_path_keep_start(item, &path->at);
 	item->substeps = (uint32_t)substeps;
+	passo_path_set_fall(item);
 	path->at.carry =
 	    stretched ? 0 : (int32_t)(path->at.carry + (int64_t)length - (int64_t)(substeps << 16));
 	path->at.length = length;

@@ -14,7 +14,7 @@ void passo_path_limit(struct passo_path_planner *path, uint32_t index)
 	const uint64_t base = item->rapid ? limit : (uint64_t)item->feed * item->feed;
 
 	item->top = passo_path_smaller(
-	    limit, passo_mul_div(base, (uint64_t) override * override, UINT64_C(1) << (2 * OVERRIDE_BITS)));
+	    limit, passo_mul_shift(base, (uint64_t) override * override, 2 * OVERRIDE_BITS));
 	if (item->rest)
 		return;
 	item->corner = passo_path_smaller(item->bend, item->top);

@@ -29,6 +29,7 @@ void passo_path_pace(
 	const uint64_t line = passo_path_larger(
 	    2 * poll / passo_path_larger(lines_sent, 1), 4 * poll / passo_path_larger(lines_queued, 1));
 
+	path->waits = false;
 	path->paced = together;
 	path->pace = (uint32_t)passo_path_smaller(ramps, PASSO_PATH_TICKS_MAX);
 	path->line_clocks =
@@ -77,7 +78,7 @@ uint32_t passo_path_pace_need(const struct passo_path_planner *path, uint64_t ti
 
 uint64_t passo_path_length_in(const struct passo_path_planner *path, uint64_t speeds, uint64_t ticks)
 {
-	return passo_mul_div(speeds, ticks << path->machine.tick_log2, UINT32_C(1) << 17);
+	return passo_mul_shift(speeds, ticks << path->machine.tick_log2, 17);
 }
 
 /* What is before the end of the ramps. */

@@ -39,6 +39,7 @@ struct passo_path_part {
 	uint64_t length; /* UQ32.32 substeps */
 	uint64_t square; /* at its end */
 	uint64_t slope;
+	bool early; /* a way up that ends where the path has to come down for the end of the known lines */
 };
 
 /* Most parts of a line. */
@@ -53,7 +54,8 @@ struct passo_path_aim {
 	uint64_t length, square; /* of the path to there, UQ32.32 substeps; of the velocity there */
 	uint64_t slope;
 	bool rest;      /* it comes to rest there */
-	bool open;      /* it ends there because what follows is not settled */
+	bool open;      /* it ends there because what follows is not settled: */
+	uint32_t index; /* this item */
 	bool plain;     /* its ramp is linear */
 	uint64_t first; /* slope of the part that it began with; `slope` is the steepest */
 };
@@ -116,6 +118,13 @@ static inline bool passo_path_is_soft(const struct passo_path_planner *path)
 #endif
 }
 
+/* Whether lone corners are rounded at constant speed, and lines bend by halves: not with the setting
+ * `unrounded`, nor in an image without room, PASSO_WITHOUT_ROUNDING. Both plan the same. */
+static inline bool passo_path_is_rounded(const struct passo_path_planner *path)
+{
+	return PASSO_PATH_HALVES > 1 && !path->unrounded;
+}
+
 /* The shape of its ramps. */
 static inline enum passo_shape passo_path_shape(const struct passo_path_planner *path)
 {
@@ -125,6 +134,17 @@ static inline enum passo_shape passo_path_shape(const struct passo_path_planner 
 #else
 	return path->shape;
 #endif
+}
+
+/* Of a component of a unit vector, 2^62 divided by it; and a limit of its axis along the line. */
+static inline uint64_t passo_path_inverse(uint32_t share)
+{
+	return (UINT64_C(1) << 62) / share;
+}
+
+static inline uint64_t passo_path_along(uint64_t limit, uint64_t inverse)
+{
+	return passo_mul_shift(limit, inverse, 62 - PASSO_PATH_UNIT_BITS);
 }
 
 /* The velocity (UQ0.48) of a square, and the square of a velocity. */
@@ -140,10 +160,15 @@ static inline uint64_t passo_path_square_of(uint64_t velocity)
 }
 
 /* Change of the square per substep within a half of an item that the axes allow, over a length (UQ32.32
- * substeps) from its lower end. Deceleration is planned a little below the limit, so that it can make up for
- * ramps that end at ticks. */
+ * substeps) from its lower end. */
 uint64_t passo_path_slope(
     const struct passo_path_item *item, unsigned half, bool up, uint64_t low, uint64_t length);
+
+/* Deceleration is planned a little below the limit, so that it can make up for ramps that end at ticks. */
+static inline uint64_t passo_path_down(uint64_t slope)
+{
+	return slope - slope / 256;
+}
 
 /* The highest square, within an item, from which it falls to the one at its end over a length that ends so
  * far before that. */
@@ -180,6 +205,16 @@ static inline unsigned passo_path_halves(const struct passo_path_item *item)
 {
 	return PASSO_PATH_HALVES > 1 && item->curve.halved ? 2 : 1;
 }
+
+/* Sets the slope of an axis of an item, beside its curve. */
+void passo_path_add_slope(struct passo_path_item *item, uint32_t axis, uint32_t share, uint64_t slope);
+
+/* What passo_path_fall() needs of the curve and the length of an item. */
+void passo_path_set_fall(struct passo_path_item *item);
+
+/* Change of the square down a whole item that is not halved, to a square at its end: the slope there, over
+ * the line. */
+uint64_t passo_path_fall(const struct passo_path_item *item, uint64_t end);
 
 /* Adds a curvature, Q15.48 per substep, to a half of an item with this unit vector. */
 void passo_path_bend(const struct passo_path_planner *path, const int64_t *curvature, const int32_t *unit,
@@ -224,10 +259,9 @@ uint64_t passo_path_shaped_corner(const struct passo_path_planner *path,
 uint64_t passo_path_limit_corner(
     struct passo_path_planner *path, const int32_t *unit, uint64_t length, struct passo_path_item *item);
 
-/* By how much a line from where the path ends, to a target, is off a shorter one from there and all that this
- * one replaces, at most: UQ32.16 substeps; saturates if it is not longer. */
-uint64_t passo_path_off(const struct passo_path_planner *path, const int64_t *target,
-    const struct passo_path_place *end, uint64_t *bulge);
+/* By how much a line from the start of the last one, to a target, is off that one and all that it replaces,
+ * at most: UQ32.16 substeps; saturates if it is not longer. */
+uint64_t passo_path_off(const struct passo_path_planner *path, const int64_t *target, uint64_t *bulge);
 
 /* Sets the limits of an item, `top` and, unless the path rests there, `corner`; those before it are known. */
 void passo_path_limit(struct passo_path_planner *path, uint32_t index);

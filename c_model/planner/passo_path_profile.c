@@ -6,16 +6,12 @@
 
 uint64_t passo_path_gain(uint64_t slope, uint64_t length)
 {
-	const struct passo_u128 product = passo_multiply(slope, length);
-
-	if (product.high >= PASSO_PATH_SQUARE_MAX >> 32)
-		return PASSO_PATH_SQUARE_MAX;
-	return product.high << 32 | product.low >> 32;
+	return passo_path_smaller(passo_mul_shift(slope, length, 32), PASSO_PATH_SQUARE_MAX);
 }
 
 uint64_t passo_path_change(const struct passo_path_planner *path, uint64_t slope, uint64_t ticks)
 {
-	return passo_mul_div(slope, ticks << path->machine.tick_log2, UINT32_C(1) << 17);
+	return passo_mul_shift(slope, ticks << path->machine.tick_log2, 17);
 }
 
 /* Length over which the square changes, UQ32.32 substeps. */
@@ -29,7 +25,7 @@ static unsigned put(struct passo_path_part *parts, unsigned count, enum passo_pa
 {
 	if (length == 0)
 		return count;
-	parts[count] = (struct passo_path_part){kind, length, square, slope};
+	parts[count] = (struct passo_path_part){kind, length, square, slope, .early = false};
 	return count + 1;
 }
 
@@ -56,15 +52,15 @@ uint64_t passo_path_flat(
 static unsigned half_parts(const struct passo_path_item *item, unsigned half, uint64_t left, uint64_t square,
     uint64_t top, uint64_t end, struct passo_path_part *parts)
 {
-	const uint64_t up = passo_path_slope(item, half, true, square, left);
-	const uint64_t down = passo_path_slope(item, half, false, end, left);
-	const uint64_t steepest = down + down / 255; /* ramps may make up for their rounding */
+	const uint64_t steepest = passo_path_slope(item, half, false, end, left); /* makes up for rounding */
+	const uint64_t down = passo_path_down(steepest);
 	const uint64_t highest = end + passo_path_gain(down, left);
 
 	/* above it where a line at whose end the path could rest has become part of a curve */
 	if (square >= highest)
 		return put(parts, 0, PASSO_PATH_DOWN, left, end, square > highest ? item->slope : steepest);
 	top = passo_path_larger(top, square);
+	const uint64_t up = passo_path_slope(item, half, true, square, left);
 	const uint64_t rise = square + passo_path_gain(up, left);
 	if (rise <= end && rise <= top)
 		return put(parts, 0, PASSO_PATH_UP, left, rise, up);
@@ -79,6 +75,8 @@ static unsigned half_parts(const struct passo_path_item *item, unsigned half, ui
 		falling = passo_path_smaller(falling, left - rising);
 	}
 	unsigned count = put(parts, 0, PASSO_PATH_UP, rising, peak, up);
+	if (count > 0)
+		parts[0].early = peak < top;
 	count = put(parts, count, PASSO_PATH_FLAT, left - rising - falling, peak, up);
 	return put(parts, count, PASSO_PATH_DOWN, falling, end, steepest);
 }

@@ -134,14 +134,19 @@ static bool next_ramp(struct passo_path_planner *path, uint32_t held, struct pas
 		if (start(path, ramp))
 			return true;
 	}
+	if (path->waits && held >= path->reserve)
+		return false;
 	struct passo_path_aim aim = passo_path_choose_aim(path, PASSO_PATH_NO_NEED);
 	uint32_t most = PASSO_PATH_TICKS_MAX;
+	const bool is_full = path->added - path->planned == path->capacity;
+
+	/* the same ramps, whenever they are asked for: none that a further line would make longer */
+	path->waits = aim.open && !is_full && held >= path->reserve;
+	path->unsettled = aim.index;
+	if (path->waits)
+		return false;
 	if (aim.open
 	    && (aim.length == 0 || passo_path_ticks_to(path, &aim) < path->reserve / RAMPS_PER_RESERVE)) {
-		const bool is_full = path->added - path->planned == path->capacity;
-
-		if (!is_full && held >= path->reserve)
-			return false;
 		if (!is_full)
 			passo_path_close(path);
 		if (!is_full && passo_path_is_held_back(path, path->planned))

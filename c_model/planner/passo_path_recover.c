@@ -69,6 +69,7 @@ static void shorten(const struct passo_path_planner *path, struct passo_path_ite
 	}
 	const uint64_t left = passo_mul_div(item->substeps, item->steps[lead], all);
 	item->substeps = (uint32_t)passo_path_smaller(passo_path_larger(left, most), PASSO_SUBSTEPS_MAX);
+	passo_path_set_fall(item);
 }
 
 static void begin_at(struct passo_path_planner *path, uint32_t index)

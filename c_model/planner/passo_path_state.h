@@ -44,6 +44,9 @@ struct passo_path_curve {
 	uint8_t helps[PASSO_PATH_HALVES];   /* bit i set: on the way up */
 	uint8_t hinders[PASSO_PATH_HALVES]; /* on the way down */
 	bool halved;                        /* each half has its own */
+	uint32_t
+	    fall; /* of a line that is not: change of the square from its start down to 0, by its curve */
+	uint32_t loss; /* UQ0.32: what a square at its end takes of that; no packed number */
 };
 
 /* A line of the path, private. Squares are those of velocities, UQ0.64 (substeps per clock)^2. */
@@ -119,11 +122,12 @@ struct passo_path_planner {
 	struct passo_path_place at, before; /* its end and its start */
 	uint64_t deviation, tolerance;      /* UQ32.16 substeps */
 	uint64_t own_tolerance;             /* the same: that of the settings */
-	uint64_t bulge; /* UQ.46 per substep: the last line is off those that it replaces by no more than
-	                   this times the distances to both of its ends */
-	uint64_t feed;  /* of the last line, as it was given */
-	bool begins;    /* the path rested before the last line */
-	bool open;      /* the last line may still become a longer one: no ramp relies on it */
+	uint64_t bulge;  /* UQ.46 per substep: the last line is off those that it replaces by no more than
+	                    this times the distances to both of its ends */
+	uint64_t feed;   /* of the last line, as it was given */
+	uint32_t wanted; /* the same, UQ0.32 */
+	bool begins;     /* the path rested before the last line */
+	bool open;       /* the last line may still become a longer one: no ramp relies on it */
 	uint32_t substeps_per_mm;
 	uint32_t dwell; /* ticks before the next line */
 	bool rest;      /* before the next line */
@@ -135,6 +139,8 @@ struct passo_path_planner {
 	bool jump, last; /* a ramp to 0 in no time is due; it ends the motion */
 	bool lines_end, ramps_end;
 	bool anew;           /* the limits of all items have changed */
+	bool waits;          /* for a further line, to make the next ramp */
+	uint32_t unsettled;  /* it waits until this item is settled */
 	uint32_t override;   /* UQ16.16 */
 	uint32_t rapid;      /* the same, of rapids */
 	uint32_t reserve;    /* ticks */

@@ -4,7 +4,7 @@
 import random
 from collections.abc import Callable
 
-from tests.helpers.grbl_judge import OVERRIDES, RESETS
+from tests.helpers.grbl_judge import OVERRIDES
 
 REAL_TIME = ("21", "21", "7e", "7e", "7e", "84", "85", "85", "18", *OVERRIDES)
 OTHERS = (
@@ -79,7 +79,7 @@ def played(history: History) -> History:
         made.append(command)
         if command.startswith("send"):
             text = bytes.fromhex(command[5:]).decode("latin-1")
-            if "\x18" in text or any(reset in text for reset in RESETS):
+            if "\x18" in text or any(reset in text for reset in ("$RST=", "$C")):
                 made.append("wait 300")
             made += ["send 3f", "wait 1"]
     made += ["pins 0", "worn 0", "send 0a", "settle", "send 3f", "wait 1", "send 18", "wait 150"]

@@ -12,7 +12,6 @@ STOPS = 200  # ms after which what stops must be at rest, and what was asked for
 OVERRIDES = {"90": (0, 100), "91": (0, 10), "92": (0, -10), "93": (0, 1), "94": (0, -1),
              "95": (1, 100), "96": (1, 50), "97": (1, 25),
              "99": (2, 100), "9a": (2, 10), "9b": (2, -10), "9c": (2, 1), "9d": (2, -1)}  # fmt: skip
-RESETS = ("$RST=", "$C")
 ANSWER = re.compile(r"ok|error:\d+")
 LINE = re.compile(
     r"|ok|error:\d+|ALARM:[1-9]|<[^<>]*>|\[[^\]]*\]|\$N?\d+=.*|>.*:(ok|error:\d+)"
@@ -98,8 +97,6 @@ class Judge:
         if not LINE.fullmatch(text):
             raise FindingError(f"{ms} ms: it says {text!r}")
         if text.startswith("Grbl"):
-            if any(reset in line for line in self.pending for reset in RESETS):
-                self.percent = [100, 100, 100]
             self.pending, self.part, self.last, self.holds = [], "", 0, -1
             self.state, self.rests = "", -1
         elif ANSWER.fullmatch(text):
@@ -129,8 +126,9 @@ class Judge:
             raise FindingError(f"{ms} ms: ok to {line!r} in Check")
         if plain.startswith("$J") and text == "ok" and self.state == "Idle":
             self.state = "Jog"
-        if plain == "$H" and text == "ok":
-            self.homes = True
+        if plain in ("$X", "$H") and text == "ok":  # no Alarm from here on, whatever was reported before
+            self.state, self.rests = "", -1
+            self.homes = self.homes or plain == "$H"
         if text == "ok" and (found := re.fullmatch(r"\$(N?\d+)=(.*)", plain)):
             self.settings.pop(found[1], None)
             if found[1] == "22":

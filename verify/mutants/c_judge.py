@@ -4,6 +4,7 @@
 import json
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -26,6 +27,7 @@ TESTS = (
 MOST_FAIL = 2  # tests of a file that do not run on copies
 LONGEST = 6.0  # seconds of the processor: a test that takes longer is no judge here
 MOST = 15.0  # for all tests of a mutant
+TEST = 0.05  # what pytest needs for each
 
 
 def tests() -> list[Path]:
@@ -36,10 +38,10 @@ def tests() -> list[Path]:
 class Worker:
     """The process that runs the tests."""
 
-    def __init__(self, root: Path = FOLDER) -> None:
+    def __init__(self, root: Path = FOLDER, ahead: Sequence[str] = ()) -> None:
         self.root = root
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "verify.mutants.c_worker", str(root)],
+            [sys.executable, "-m", "verify.mutants.c_worker", str(root), *ahead],
             cwd=paths.root,
             env=environment(),
             stdin=subprocess.PIPE,
@@ -105,16 +107,32 @@ def _record(worker: Worker, file: Path, count: int, show: Callable[[str], None])
     }
 
 
-def _some(reaching: dict[str, float], limit: float) -> list[str]:
-    """The quick tests first, as many as there is time for."""
-    chosen: list[str] = []
-    total = 0.0
-    for test, seconds in sorted(reaching.items(), key=lambda item: item[1]):
-        if seconds > LONGEST or total + seconds > limit:
-            break
-        total += seconds
-        chosen.append(test)
-    return chosen
+class Kills:
+    """Which tests kill mutants of which file: those come first, by how many in a second."""
+
+    def __init__(self, mutants: Sequence[CMutant], fates: Fates) -> None:
+        self.count: Counter[tuple[str, str]] = Counter()
+        for mutant in mutants:
+            self.add(mutant, fates.get(mutant.name).killed)
+
+    def add(self, mutant: CMutant, test: str) -> None:
+        """A test has killed a mutant."""
+        self.count[mutant.file, test] += 1
+
+    def chosen(self, mutant: CMutant, reaching: dict[str, float], limit: float) -> list[str]:
+        """As many tests as there is time for."""
+
+        def last(item: tuple[str, float]) -> float:
+            test, seconds = item
+            return (seconds + TEST) / (1 + self.count[mutant.file, test])
+
+        tests: list[str] = []
+        total = 0.0
+        for test, seconds in sorted(reaching.items(), key=last):
+            if seconds <= LONGEST and total + seconds + TEST <= limit:
+                total += seconds + TEST
+                tests.append(test)
+        return tests
 
 
 def judge(
@@ -124,7 +142,7 @@ def judge(
     limits: Sequence[float] = (1.5, MOST),
 ) -> None:
     """Let the tests judge all mutants: first those of a second, then of more."""
-    worker = Worker()
+    worker = Worker(ahead=[f"tests.{file.stem}" for file in tests()])
     try:
         reached = record(worker, len(mutants), show)
         of: dict[int, dict[str, float]] = {mutant.number: {} for mutant in mutants}
@@ -134,17 +152,21 @@ def judge(
                     of[number][test] = found["seconds"]
         if fates.other:
             _again(mutants, fates, worker, show)
+        kills = Kills(mutants, fates)
         for limit in limits:
+            name = f"{limit} s"
             for i, mutant in enumerate(mutants, 1):
                 fate = fates.get(mutant.name)
-                name = f"{limit} s"
-                if not fate.lives or name in (fate.tried or []):
+                if not fate.waits(name):
                     continue
-                chosen = [test for test in _some(of[mutant.number], limit) if test not in (fate.tried or [])]
-                if chosen:
+                tried = fate.tried or []
+                left = {test: seconds for test, seconds in of[mutant.number].items() if test not in tried}
+                if chosen := kills.chosen(mutant, left, limit):
                     done = worker.ask({"mutant": mutant.number, "tests": chosen, "seconds": 2 * limit + 5})
                     fate.killed = fate.says = done["test"]
-                fate.tried = [*(fate.tried or []), name]
+                    if fate.killed:
+                        kills.add(mutant, fate.killed)
+                fate.tried = [*tried, *chosen, name]
                 if i % 10 == 0:
                     fates.save()
                     living = sum(fates.get(mutant.name).lives for mutant in mutants)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Runs tests on C sources with mutants, below the folder that is given. Reads JSON objects, one in a line:
+"""Runs tests on C sources with mutants, below the folder that is given; modules that follow are imported
+before. Reads JSON objects, one in a line:
 
     {"mutant": N, "tests": [...], "seconds": S}    gives {"mutant": N, "test": what failed, or ""}
     {"record": FILE, "tests": [...], "longest": S} gives {"seconds": {test: S}, "reached": {test: [N, ...]},
@@ -81,7 +82,18 @@ class Recorder:
 def _run(recorder: Recorder, tests: list[str]) -> int:
     import pytest
 
-    options = ["-x", "-q", "-p", "no:cacheprovider", "-p", "no:xdist", "--no-header", "--tb=no"]
+    # the tests are imported already: without assertions that are rewritten
+    options = [
+        "-x",
+        "-q",
+        "-p",
+        "no:cacheprovider",
+        "-p",
+        "no:xdist",
+        "--no-header",
+        "--tb=no",
+        "--assert=plain",
+    ]
     if recorder.file:
         options.remove("-x")
     with (
@@ -141,7 +153,7 @@ def _forked(asked: dict[str, Any]) -> dict[str, Any]:
 def main() -> None:
     """Answer each line."""
     _switch(Path(sys.argv[1]))
-    for module in AHEAD:
+    for module in (*AHEAD, *sys.argv[2:]):
         importlib.import_module(module)
     for line in sys.stdin:
         print(json.dumps(_forked(json.loads(line))), flush=True)

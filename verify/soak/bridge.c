@@ -23,18 +23,18 @@ static void wait(void *context, uint32_t time)
 
 static enum passo_error configure(struct bridge *bridge)
 {
-	struct plot_random *random = bridge->random;
+	struct scenario_random *random = bridge->random;
 
 	for (uint8_t a = 0; a < bridge->world->model.parameters.axes; a++) {
 		struct passo_axis_config config = {.in_clocks = true,
-		    .step_high_ns = 1u + plot_draw(random, 4),
-		    .step_low_ns = 1u + plot_draw(random, 4),
-		    .dir_setup_ns =
-			bridge->slow_turns ? 400u + plot_draw(random, 600) : 1u + plot_draw(random, 9),
-		    .dir_hold_ns = 1u + plot_draw(random, 9),
-		    .step_inverted = plot_chance(random, 50),
-		    .direction_inverted = plot_chance(random, 50),
-		    .both_edges = plot_chance(random, 20)};
+		    .step_high_ns = 1u + scenario_draw(random, 4),
+		    .step_low_ns = 1u + scenario_draw(random, 4),
+		    .dir_setup_ns = bridge->slow_turns ? 400u + scenario_draw(random, 600)
+		                                       : 1u + scenario_draw(random, 9),
+		    .dir_hold_ns = 1u + scenario_draw(random, 9),
+		    .step_inverted = scenario_chance(random, 50),
+		    .direction_inverted = scenario_chance(random, 50),
+		    .both_edges = scenario_chance(random, 20)};
 		enum passo_error error = passo_configure_axis(&bridge->passo, a, &config);
 
 		bridge_note(bridge, "configure", error);
@@ -61,7 +61,7 @@ static void begin_sequences(struct bridge *bridge)
 {
 	uint32_t mosi[PASSO_FRAME_WORDS_MAX], miso[PASSO_FRAME_WORDS_MAX];
 	const uint32_t nothing = 0;
-	const uint8_t sequence = (uint8_t)plot_draw(bridge->random, 256);
+	const uint8_t sequence = (uint8_t)scenario_draw(bridge->random, 256);
 	const size_t count = passo_frame_write(mosi, sequence, PASSO_ADDRESS_RUN, &nothing, 1);
 
 	world_exchange(bridge->world, mosi, miso, count, 32u * count);
@@ -72,26 +72,26 @@ void bridge_play(struct world *world, const struct world_rtl *rtl, uint64_t seed
     FILE *print, struct bridge_counts *counts)
 {
 	static struct bridge bridge;
-	const struct passo_parameters parameters = plot_parameters(BRIDGE_SET);
-	struct plot_random random;
+	const struct passo_parameters parameters = scenario_parameters(BRIDGE_SET);
+	struct scenario_random random;
 	const struct passo_options options = {.clock_hz = CLOCK_HZ};
 
-	plot_seed(&random, seed + SEED_OFFSET, number);
-	const bool death = plot_chance(&random, 45);
+	scenario_seed(&random, seed + SEED_OFFSET, number);
+	const bool death = scenario_chance(&random, 45);
 	memset(&bridge, 0, sizeof bridge);
 	world_open(world, &parameters, rtl);
 	bridge.world = world;
 	bridge.random = &random;
 	bridge.counts = counts;
 	bridge.print = print;
-	bridge.slow_turns = plot_chance(&random, 30);
+	bridge.slow_turns = scenario_chance(&random, 30);
 	bridge.wire = (struct wire){.world = world, .random = &random, .counts = counts};
 	struct passo_hardware hardware = {.transfer = wire_transfer,
 	    .microseconds = microseconds,
 	    .wait = wait,
 	    .context = &bridge.wire,
 	    .tries = death ? TRIES_DEATH : TRIES_NOISE};
-	if (plot_chance(&random, 50)) {
+	if (scenario_chance(&random, 50)) {
 		hardware.start = wire_start;
 		hardware.finish = wire_finish;
 		hardware.spare = bridge.wire.spare;

@@ -6,7 +6,7 @@
 #ifndef SOAK_BRIDGE_H
 #define SOAK_BRIDGE_H
 
-#include "plot.h"
+#include "scenario.h"
 
 /* Parameter set of these histories. */
 #define BRIDGE_SET 2u

@@ -10,14 +10,14 @@
 /* Lets the link die in one of the next frames. */
 static void arm(struct bridge *bridge)
 {
-	bridge->wire.level = plot_chance(bridge->random, 50);
-	bridge->wire.dies_in = 1u + plot_draw(bridge->random, 3);
-	bridge->wire.dies_at = plot_draw(bridge->random, 32u * 12u);
+	bridge->wire.level = scenario_chance(bridge->random, 50);
+	bridge->wire.dies_in = 1u + scenario_draw(bridge->random, 3);
+	bridge->wire.dies_at = scenario_draw(bridge->random, 32u * 12u);
 }
 
 static void reconnect(struct bridge *bridge)
 {
-	bridge_poll(bridge, plot_draw(bridge->random, 4));
+	bridge_poll(bridge, scenario_draw(bridge->random, 4));
 	bridge->wire.dead = false;
 	bridge->wire.dies_in = 0;
 	bridge_poll(bridge, POLLS);
@@ -99,7 +99,7 @@ static void die_in_rate(struct bridge *bridge, unsigned which)
 	else if (which == 1u)
 		error = passo_resume(&bridge->passo);
 	else
-		error = passo_override(&bridge->passo, 1u + plot_draw(bridge->random, 100));
+		error = passo_override(&bridge->passo, 1u + scenario_draw(bridge->random, 100));
 	bridge_note(bridge,
 	    which == 0u   ? "hold while the wire dies"
 	    : which == 1u ? "resume ..."
@@ -121,7 +121,7 @@ static void die_in_stop(struct bridge *bridge, bool softly)
 	bridge_note(bridge, what, softly ? passo_stop(&bridge->passo) : passo_abort(&bridge->passo));
 	reconnect(bridge);
 	bridge_check_stopped(bridge, what);
-	if (plot_chance(bridge->random, 50)) {
+	if (scenario_chance(bridge->random, 50)) {
 		arm(bridge);
 		bridge_note(bridge, "clear while the wire dies", passo_clear(&bridge->passo));
 		reconnect(bridge);
@@ -131,13 +131,13 @@ static void die_in_stop(struct bridge *bridge, bool softly)
 
 void bridge_play_death(struct bridge *bridge)
 {
-	struct plot_random *random = bridge->random;
-	const unsigned kind = plot_draw(random, 8);
+	struct scenario_random *random = bridge->random;
+	const unsigned kind = scenario_draw(random, 8);
 	enum passo_error error;
 
-	for (unsigned i = 1u + plot_draw(random, 6); i != 0u; i--)
+	for (unsigned i = 1u + scenario_draw(random, 6); i != 0u; i--)
 		bridge_move(bridge, &error);
-	bridge_poll(bridge, plot_draw(random, 6));
+	bridge_poll(bridge, scenario_draw(random, 6));
 	if (kind <= 1u)
 		die_in_stop(bridge, kind == 0u);
 	else if (kind <= 4u)

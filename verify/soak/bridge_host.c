@@ -96,16 +96,16 @@ void bridge_poll(struct bridge *bridge, unsigned times)
 struct passo_move_by_speed bridge_draw_move(struct bridge *bridge)
 {
 	const unsigned axes = bridge->world->model.parameters.axes;
-	struct passo_move_by_speed move = {.profile = (enum passo_profile)plot_draw(bridge->random, 4),
+	struct passo_move_by_speed move = {.profile = (enum passo_profile)scenario_draw(bridge->random, 4),
 	    .acceleration = 40000000u * PASSO_UNIT_Q32};
 
 	/* within the setup time, no more steps come than the queue of the axis holds */
-	move.speed = bridge->slow_turns ? 3000u : 10000u + plot_draw(bridge->random, 40000);
+	move.speed = bridge->slow_turns ? 3000u : 10000u + scenario_draw(bridge->random, 40000);
 	move.speed *= PASSO_UNIT_Q32;
 
 	for (unsigned a = 0; a < axes; a++)
-		move.steps[a] = (int32_t)plot_draw(bridge->random, 41) - 20;
-	move.steps[plot_draw(bridge->random, axes)] = 21;
+		move.steps[a] = (int32_t)scenario_draw(bridge->random, 41) - 20;
+	move.steps[scenario_draw(bridge->random, axes)] = 21;
 	return move;
 }
 

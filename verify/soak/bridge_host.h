@@ -15,7 +15,7 @@
 struct bridge {
 	struct wire wire;
 	struct world *world;
-	struct plot_random *random;
+	struct scenario_random *random;
 	struct bridge_counts *counts;
 	FILE *print;
 	struct passo passo;

@@ -29,7 +29,7 @@ static bool next_ramp(void *context, struct passo_ramp *ramp)
 
 static void stream(struct bridge *bridge)
 {
-	struct supply supply = {.wanted = 3u + plot_draw(bridge->random, 8)};
+	struct supply supply = {.wanted = 3u + scenario_draw(bridge->random, 8)};
 	const struct passo_source source = {next_line, next_ramp, &supply};
 
 	bridge_finish(bridge);
@@ -44,7 +44,7 @@ static void stream(struct bridge *bridge)
 
 static void toggle_enable(struct bridge *bridge)
 {
-	const uint8_t axis = (uint8_t)plot_draw(bridge->random, bridge->world->model.parameters.axes);
+	const uint8_t axis = (uint8_t)scenario_draw(bridge->random, bridge->world->model.parameters.axes);
 
 	enum passo_error error = passo_enable(&bridge->passo, axis, false);
 	bridge_note(bridge, "disable", error);
@@ -61,21 +61,21 @@ static void toggle_enable(struct bridge *bridge)
 void bridge_play_noise(struct bridge *bridge)
 {
 	static const uint32_t rates[] = {100000, 10000, 1000};
-	struct plot_random *random = bridge->random;
+	struct scenario_random *random = bridge->random;
 	enum passo_error error;
 
-	bridge->wire.one_in = rates[plot_draw(random, 3)];
-	bridge->wire.worse = plot_chance(random, 50) ? 5u : 0u;
-	for (unsigned i = 6u + plot_draw(random, 6); i != 0u && !bridge->world->failed_at; i--) {
-		switch (plot_draw(random, 16)) {
+	bridge->wire.one_in = rates[scenario_draw(random, 3)];
+	bridge->wire.worse = scenario_chance(random, 50) ? 5u : 0u;
+	for (unsigned i = 6u + scenario_draw(random, 6); i != 0u && !bridge->world->failed_at; i--) {
+		switch (scenario_draw(random, 16)) {
 		case 0:
 			bridge_must(bridge, "hold", passo_hold(&bridge->passo));
-			bridge_poll(bridge, plot_draw(random, 12));
+			bridge_poll(bridge, scenario_draw(random, 12));
 			bridge_must(bridge, "resume", passo_resume(&bridge->passo));
 			break;
 		case 1:
-			bridge_must(
-			    bridge, "override", passo_override(&bridge->passo, 20u + plot_draw(random, 81)));
+			bridge_must(bridge, "override",
+			    passo_override(&bridge->passo, 20u + scenario_draw(random, 81)));
 			break;
 		case 2:
 			bridge_must(bridge, "stop", passo_stop(&bridge->passo));
@@ -95,7 +95,7 @@ void bridge_play_noise(struct bridge *bridge)
 			toggle_enable(bridge);
 			break;
 		case 6:
-			bridge_poll(bridge, plot_draw(random, 8));
+			bridge_poll(bridge, scenario_draw(random, 8));
 			break;
 		default:
 			if (!bridge_move(bridge, &error) && error != PASSO_ERROR_FULL

@@ -11,7 +11,7 @@ enum worse { WORSE_NONE, WORSE_LOST, WORSE_DOUBLED, WORSE_CUT };
 
 static bool flips(struct wire *wire)
 {
-	const bool flip = wire->one_in != 0u && plot_draw(wire->random, wire->one_in) == 0u;
+	const bool flip = wire->one_in != 0u && scenario_draw(wire->random, wire->one_in) == 0u;
 
 	wire->counts->flips += flip ? 1u : 0u;
 	return flip;
@@ -31,9 +31,9 @@ static bool exchange_bit(struct world *world, bool mosi, bool lost)
 
 static enum worse draw_worse(struct wire *wire)
 {
-	if (wire->worse == 0u || !plot_chance(wire->random, wire->worse))
+	if (wire->worse == 0u || !scenario_chance(wire->random, wire->worse))
 		return WORSE_NONE;
-	const enum worse worse = (enum worse)(1u + plot_draw(wire->random, 3));
+	const enum worse worse = (enum worse)(1u + scenario_draw(wire->random, 3));
 	wire->counts->lost += worse == WORSE_LOST ? 1u : 0u;
 	wire->counts->doubled += worse == WORSE_DOUBLED ? 1u : 0u;
 	wire->counts->cuts += worse == WORSE_CUT ? 1u : 0u;
@@ -45,7 +45,7 @@ bool wire_transfer(void *context, const uint32_t *send, uint32_t *receive, size_
 	struct wire *wire = context;
 	struct world *world = wire->world;
 	const enum worse worse = draw_worse(wire);
-	const size_t bad_bit = plot_draw(wire->random, 32u * (uint32_t)words);
+	const size_t bad_bit = scenario_draw(wire->random, 32u * (uint32_t)words);
 	const bool dies = wire->dies_in != 0u && --wire->dies_in == 0u;
 
 	wire->counts->frames++;
@@ -84,7 +84,7 @@ bool wire_start(void *context, const uint32_t *send, uint32_t *receive, size_t w
 	wire->send = send;
 	wire->receive = receive;
 	wire->words = words;
-	wire->left = 1u + plot_draw(wire->random, FINISHES_MAX);
+	wire->left = 1u + scenario_draw(wire->random, FINISHES_MAX);
 	return true;
 }
 

@@ -9,7 +9,7 @@
 
 struct wire {
 	struct world *world;
-	struct plot_random *random;
+	struct scenario_random *random;
 	struct bridge_counts *counts;
 	uint32_t one_in;  /* one bit in one_in is flipped; 0: none */
 	uint32_t worse;   /* percentage of frames with a lost or doubled clock, or cut */

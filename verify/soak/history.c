@@ -7,18 +7,18 @@
 #include "mutants.h"
 
 static void open_world(
-    struct world *world, const struct plot *plot, const struct world_rtl *rtl, FILE *record)
+    struct world *world, const struct scenario *scenario, const struct world_rtl *rtl, FILE *record)
 {
-	world_open(world, &plot->parameters, rtl);
+	world_open(world, &scenario->parameters, rtl);
 	world->record = record;
-	world->half_period = plot->half_period;
-	world->setup = plot->setup;
-	memcpy(world->gap_enabled, plot->gap_enabled, sizeof world->gap_enabled);
+	world->half_period = scenario->half_period;
+	world->setup = scenario->setup;
+	memcpy(world->gap_enabled, scenario->gap_enabled, sizeof world->gap_enabled);
 	if (world->machine) {
-		world->levels = world->inputs = plot->levels;
-		for (unsigned a = 0; a < plot->parameters.axes; a++)
+		world->levels = world->inputs = scenario->levels;
+		for (unsigned a = 0; a < scenario->parameters.axes; a++)
 			world->shafts[a] = (struct world_shaft){
-			    .coupled = (plot->coupled >> a & 1u) != 0u, .period = plot->shaft_period};
+			    .coupled = (scenario->coupled >> a & 1u) != 0u, .period = scenario->shaft_period};
 	}
 	world_run(world, 8);
 }
@@ -26,7 +26,7 @@ static void open_world(
 void history_play(struct world *world, const struct world_rtl *rtl, uint64_t seed, uint64_t number,
     bool brief, FILE *record, FILE *print, struct history_counts *counts)
 {
-	static struct plot plot;
+	static struct scenario scenario;
 	static struct world scout;
 	struct history_counts ignored = {0};
 	struct player player = {.world = &scout, .counts = &ignored};
@@ -34,36 +34,36 @@ void history_play(struct world *world, const struct world_rtl *rtl, uint64_t see
 	scout.latency = world->latency;
 	scout.machine = world->machine;
 	if (world->pokes)
-		plot_begin_pokes(&plot, seed, number);
+		scenario_begin_pokes(&scenario, seed, number);
 	else if (world->starts)
-		plot_begin_starts(&plot, seed, number);
+		scenario_begin_starts(&scenario, seed, number);
 	else if (world->machine)
-		plot_begin_machine(&plot, seed, number, world->tries);
+		scenario_begin_machine(&scenario, seed, number, world->tries);
 	else
-		plot_begin(&plot, seed, number);
+		scenario_begin(&scenario, seed, number);
 	const unsigned most = world->machine ? 5u : 3u;
 	const unsigned disturbances =
-	    world->tries || world->pokes || world->starts ? 0u : 1u + plot_draw(&plot.random, most);
+	    world->tries || world->pokes || world->starts ? 0u : 1u + scenario_draw(&scenario.random, most);
 	for (unsigned i = 0; i < disturbances; i++) {
-		const enum plot_kind kind = i != 0u || !plot.waits        ? plot_kind(&plot)
-		                          : plot_chance(&plot.random, 70) ? PLOT_SYNC
-		                                                          : PLOT_RUN;
-		struct action action = plot_disturbance(&plot, kind);
+		const enum scenario_kind kind = i != 0u || !scenario.waits ? scenario_kind(&scenario)
+		                              : scenario_chance(&scenario.random, 70) ? SCENARIO_SYNC
+		                                                                      : SCENARIO_RUN;
+		struct action action = scenario_disturbance(&scenario, kind);
 
-		open_world(&scout, &plot, NULL, NULL);
-		player_actions(&player, &plot, plot.prologue + (i == 0u ? 0u : plot.count));
+		open_world(&scout, &scenario, NULL, NULL);
+		player_actions(&player, &scenario, scenario.prologue + (i == 0u ? 0u : scenario.count));
 		world_run(&scout, SCOUT_CLOCKS);
-		player_aim(&scout, &plot.random, kind, &action);
-		plot_add(&plot, &action);
+		player_aim(&scout, &scenario.random, kind, &action);
+		scenario_add(&scenario, &action);
 		if (action.kind == ACTION_RESET && action.clocks > 4u * RESET_MARGIN) {
 			/* a frame that starts during a reset is ignored */
-			struct action within =
-			    plot_disturbance(&plot, plot_chance(&plot.random, 50) ? PLOT_ENABLE : PLOT_RUN);
+			struct action within = scenario_disturbance(&scenario,
+			    scenario_chance(&scenario.random, 50) ? SCENARIO_ENABLE : SCENARIO_RUN);
 
-			within.at =
-			    action.at + 1u + plot_draw(&plot.random, action.clocks - 2u * RESET_MARGIN);
+			within.at = action.at + 1u
+			          + scenario_draw(&scenario.random, action.clocks - 2u * RESET_MARGIN);
 			within.clocks = 2;
-			plot_add(&plot, &within);
+			scenario_add(&scenario, &within);
 		}
 		counts->kinds[kind]++;
 		if (action.event < EVENT_KINDS) {
@@ -72,12 +72,12 @@ void history_play(struct world *world, const struct world_rtl *rtl, uint64_t see
 		}
 	}
 
-	struct plot_random random = plot.random;
+	struct scenario_random random = scenario.random;
 	player = (struct player){.world = world, .counts = counts, .print = print};
 	if (world->mutants && !mutants_fork(world, number))
 		return;
-	open_world(world, &plot, rtl, record);
-	player_actions(&player, &plot, SIZE_MAX);
+	open_world(world, &scenario, rtl, record);
+	player_actions(&player, &scenario, SIZE_MAX);
 	if (world->pokes)
 		player_pokes(&player, &random);
 	else if (world->machine)
@@ -87,8 +87,17 @@ void history_play(struct world *world, const struct world_rtl *rtl, uint64_t see
 	if (record && world->machine)
 		world_record_estop(world);
 	counts->clocks += world->clock;
+	/* what the pins show before is the cause of what the last moves show */
+	const uint64_t late = world->failed_at >= world->known_from ? world->failed_at : 0u;
+	char text[WORLD_TEXT];
+
+	memcpy(text, world->failure, sizeof text);
+	if (late != 0u && world->known_from != 0u)
+		world->failed_at = 0;
 	if (!world->failed_at && !world->pokes)
 		judge_history(world, &counts->judge);
+	if (!world->failed_at && late != 0u)
+		world_fail(world, late, "%s", text);
 	if (world->mutants)
 		mutants_end(world);
 	world_close(world);

@@ -6,14 +6,14 @@
 #define SOAK_HISTORY_H
 
 #include "judge.h"
-#include "plot.h"
+#include "scenario.h"
 
 struct history_counts {
 	struct judge_counts judge;
 	uint64_t clocks, frames, refused, busy;
-	uint64_t aimed, hit;          /* aimed disturbances, and those that hit their clock */
-	uint64_t kinds[PLOT_KINDS];   /* disturbances by kind */
-	uint64_t events[EVENT_KINDS]; /* targets by kind */
+	uint64_t aimed, hit;            /* aimed disturbances, and those that hit their clock */
+	uint64_t kinds[SCENARIO_KINDS]; /* disturbances by kind */
+	uint64_t events[EVENT_KINDS];   /* targets by kind */
 };
 
 /* Plays history `number` of a seed: first on the model alone to find targets, then with everything that

@@ -13,7 +13,7 @@
 #define POLLS_MAX (player->world->alone ? 120u : 400u)
 #define LAST_MOVE_STEPS 24u
 
-static bool send(struct player *player, enum passo_operation operation, uint16_t address,
+bool player_send(struct player *player, enum passo_operation operation, uint16_t address,
     const uint32_t *words, unsigned length)
 {
 	struct action action = {.kind = ACTION_FRAME,
@@ -32,12 +32,12 @@ static bool send(struct player *player, enum passo_operation operation, uint16_t
 
 static bool write_one(struct player *player, uint16_t address, uint32_t word)
 {
-	return send(player, PASSO_OPERATION_WRITE, address, &word, 1);
+	return player_send(player, PASSO_OPERATION_WRITE, address, &word, 1);
 }
 
-static uint32_t state_of(struct player *player, unsigned channel)
+uint32_t player_state_of(struct player *player, unsigned channel)
 {
-	send(player, PASSO_OPERATION_READ, channel_address(channel, PASSO_CHANNEL_STATE), NULL, 3);
+	player_send(player, PASSO_OPERATION_READ, channel_address(channel, PASSO_CHANNEL_STATE), NULL, 3);
 	return player->miso[PASSO_FRAME_DATA];
 }
 
@@ -74,32 +74,32 @@ static uint32_t empty_room(const struct player *player)
 
 static void read_positions(struct player *player, unsigned channel)
 {
-	send(player, PASSO_OPERATION_READ, channel_address(channel, PASSO_CHANNEL_POSITION_BASE), NULL,
+	player_send(player, PASSO_OPERATION_READ, channel_address(channel, PASSO_CHANNEL_POSITION_BASE), NULL,
 	    player_axes(player));
 }
 
 /* Whatever is in progress, a stop or an abort ends it in time. */
-static uint32_t end_motion(struct player *player, struct plot_random *random, unsigned channel)
+static uint32_t end_motion(struct player *player, struct scenario_random *random, unsigned channel)
 {
 	struct world *world = player->world;
-	uint32_t state = state_of(player, channel);
+	uint32_t state = player_state_of(player, channel);
 	const uint32_t slew = 8192;
 
-	for (unsigned i = plot_draw(random, 6); is_occupied(state) && i != 0u; i--)
-		state = state_of(player, channel);
-	if (is_occupied(state) && plot_chance(random, 60)) {
+	for (unsigned i = scenario_draw(random, 6); is_occupied(state) && i != 0u; i--)
+		state = player_state_of(player, channel);
+	if (is_occupied(state) && scenario_chance(random, 60)) {
 		write_one(player, channel_address(channel, PASSO_CHANNEL_STOP_SLEW), slew);
 		command(player, channel, STOP, "");
 		/* the ticks that the rate needs; a read takes longer than five */
 		for (unsigned i = 0; i < PASSO_RATE_ONE / slew / 5u + 3u; i++)
-			state = state_of(player, channel);
+			state = player_state_of(player, channel);
 		if (is_occupied(state))
 			world_fail(world, world->clock,
 			    "channel %u: a stop does not end the motion, state %x", channel, state);
 	}
-	if (is_occupied(state) || plot_chance(random, 20)) {
-		command(player, channel, ABORT | (plot_chance(random, 30) ? CLEAR : 0u), "");
-		state = state_of(player, channel);
+	if (is_occupied(state) || scenario_chance(random, 20)) {
+		command(player, channel, ABORT | (scenario_chance(random, 30) ? CLEAR : 0u), "");
+		state = player_state_of(player, channel);
 		if (motion_of(state) != PASSO_STATE_STOPPED)
 			world_fail(
 			    world, world->clock, "channel %u: state %x after an abort", channel, state);
@@ -107,13 +107,13 @@ static uint32_t end_motion(struct player *player, struct plot_random *random, un
 	return state;
 }
 
-static uint32_t come_to_rest(struct player *player, struct plot_random *random, unsigned channel)
+static uint32_t come_to_rest(struct player *player, struct scenario_random *random, unsigned channel)
 {
 	struct world *world = player->world;
 	uint32_t state = end_motion(player, random, channel);
 
 	for (unsigned i = 0; i < POLLS_MAX && !is_quiet(state) && !world->failed_at; i++) {
-		state = state_of(player, channel);
+		state = player_state_of(player, channel);
 		if (is_occupied(state)) /* another motion was queued */
 			state = end_motion(player, random, channel);
 	}
@@ -124,20 +124,21 @@ static uint32_t come_to_rest(struct player *player, struct plot_random *random, 
 }
 
 /* Restores empty queues, IDLE, quiet, position 0 and full rate. */
-static void start_again(struct player *player, struct plot_random *random, unsigned channel, uint32_t state)
+static void start_again(
+    struct player *player, struct scenario_random *random, unsigned channel, uint32_t state)
 {
 	struct world *world = player->world;
 	const uint32_t rates[4] = {ZERO, PASSO_RATE_ONE, PASSO_RATE_ONE, PASSO_RATE_ONE};
 
-	if (motion_of(state) == PASSO_STATE_IDLE && plot_chance(random, 50)) {
-		command(player, channel, plot_chance(random, 50) ? STOP : ABORT, "");
-		state = state_of(player, channel);
+	if (motion_of(state) == PASSO_STATE_IDLE && scenario_chance(random, 50)) {
+		command(player, channel, scenario_chance(random, 50) ? STOP : ABORT, "");
+		state = player_state_of(player, channel);
 	}
 	if (motion_of(state) != PASSO_STATE_IDLE)
 		command(player, channel, CLEAR, "in STOPPED");
-	state = state_of(player, channel);
+	state = player_state_of(player, channel);
 	for (unsigned i = 0; i < POLLS_MAX && !is_quiet(state); i++)
-		state = state_of(player, channel);
+		state = player_state_of(player, channel);
 	const struct passo_channel_state now = passo_unpack_channel_state(state);
 	if (!now.quiet || now.stopping || now.cause != PASSO_CAUSE_NONE || now.state != PASSO_STATE_IDLE)
 		world_fail(world, world->clock, "channel %u: state %x after CLEAR", channel, state);
@@ -146,12 +147,13 @@ static void start_again(struct player *player, struct plot_random *random, unsig
 		command(player, channel, ABORT, "");
 		command(player, channel, CLEAR, "in STOPPED");
 	}
-	if (!send(player, PASSO_OPERATION_WRITE, channel_address(channel, PASSO_CHANNEL_COMMAND), rates, 4))
+	if (!player_send(
+		player, PASSO_OPERATION_WRITE, channel_address(channel, PASSO_CHANNEL_COMMAND), rates, 4))
 		world_fail(world, world->clock, "channel %u: ZERO was refused at rest", channel);
 	read_positions(player, channel);
 }
 
-static void last_move(struct player *player, struct plot_random *random, unsigned channel)
+static void last_move(struct player *player, struct scenario_random *random, unsigned channel)
 {
 	struct world *world = player->world;
 	uint32_t words[PASSO_FRAME_PAYLOAD_MAX];
@@ -159,7 +161,7 @@ static void last_move(struct player *player, struct plot_random *random, unsigne
 	    .line = {.last = true, .substeps = 2u * LAST_MOVE_STEPS, .directions = (uint8_t)channel}};
 	struct passo_line line = move.line;
 	/* slow enough for the steps that queue during the DIR setup time */
-	const bool slow = plot_chance(random, 20);
+	const bool slow = scenario_chance(random, 20);
 	const uint64_t most = PASSO_VELOCITY_MAX >> (slow ? 7 : 4);
 	const uint64_t any = world->clock * UINT64_C(0x9E3779B97F4A7C15);
 	const uint64_t velocity = most - (any >> 16) % (most / 2u);
@@ -175,12 +177,12 @@ static void last_move(struct player *player, struct plot_random *random, unsigne
 		line.steps[a] = LAST_MOVE_STEPS - a;
 	size_t length = passo_ramp_words(words, &ramps[0]);
 	length += passo_ramp_words(words + length, &ramps[1]);
-	const bool ramps_taken = send(player, PASSO_OPERATION_PUSH,
+	const bool ramps_taken = player_send(player, PASSO_OPERATION_PUSH,
 	    channel_address(channel, PASSO_CHANNEL_RAMP), words, (unsigned)length);
 	passo_line_words(words, &line, (uint8_t)player_axes(player));
 	length = world_line_words(&world->model.parameters);
 	words[length - 1u] = world->machine ? 0u : words[length - 1u];
-	if (!send(player, PASSO_OPERATION_PUSH, channel_address(channel, PASSO_CHANNEL_LINE), words,
+	if (!player_send(player, PASSO_OPERATION_PUSH, channel_address(channel, PASSO_CHANNEL_LINE), words,
 		(unsigned)length)
 	    || !ramps_taken)
 		world_fail(world, world->clock, "channel %u: the last move was refused", channel);
@@ -190,9 +192,9 @@ static void last_move(struct player *player, struct plot_random *random, unsigne
 		const uint32_t dir_setup = slow && a + 1u == player_axes(player) ? frames + 400u : 3u;
 		const uint32_t timings[2] = {0x40004u, dir_setup << 16 | 3u};
 
-		send(player, PASSO_OPERATION_WRITE, axis_address(channel, a, PASSO_AXIS_STEP_TIMING), timings,
-		    2);
-		const uint32_t pins = plot_draw(random, 16) << 1;
+		player_send(player, PASSO_OPERATION_WRITE, axis_address(channel, a, PASSO_AXIS_STEP_TIMING),
+		    timings, 2);
+		const uint32_t pins = scenario_draw(random, 16) << 1;
 		move.both_edges[a] = (pins >> PASSO_AXIS_PINS_BOTH_EDGES_LSB & 1u) != 0u;
 		if (!write_one(player, axis_address(channel, a, PASSO_AXIS_PINS), pins))
 			world_fail(world, world->clock, "channel %u: PINS were refused at rest", channel);
@@ -201,7 +203,7 @@ static void last_move(struct player *player, struct plot_random *random, unsigne
 	move.from = world->clock;
 	write_one(player, PASSO_ADDRESS_RUN, 1u << channel);
 	for (unsigned i = 0; i < POLLS_MAX && !(state != 0u && is_quiet(state)); i++)
-		state = state_of(player, channel);
+		state = player_state_of(player, channel);
 	if (motion_of(state) != PASSO_STATE_IDLE)
 		world_fail(world, world->clock, "channel %u: state %x after the last move", channel, state);
 	read_positions(player, channel);
@@ -222,12 +224,12 @@ static void last_move(struct player *player, struct plot_random *random, unsigne
 	}
 }
 
-void player_end(struct player *player, struct plot_random *random, bool brief)
+void player_end(struct player *player, struct scenario_random *random, bool brief)
 {
 	struct world *world = player->world;
 	uint32_t states[PASSO_CHANNELS_MAX] = {0};
 
-	if (plot_chance(random, 8)) { /* a reset leads to the same state */
+	if (scenario_chance(random, 8)) { /* a reset leads to the same state */
 		world_add_pin(world, (struct world_pin){world->clock + 3u, PASSO_INPUT_RST, true, 0, 0});
 		world_add_pin(world, (struct world_pin){world->clock + 5u, PASSO_INPUT_RST, false, 0, 0});
 		world_run(world, 20);
@@ -241,5 +243,16 @@ void player_end(struct player *player, struct plot_random *random, bool brief)
 		start_again(player, random, c, states[c]);
 	for (unsigned c = 0; c < player_channels(player) && !world->failed_at; c++)
 		last_move(player, random, c);
+	world->known_from = world->clock + 1u;
+	if (!world->machine && !world->failed_at)
+		player_shaped_move(player, random, scenario_draw(random, player_channels(player)));
+	if (world->machine && !world->tries && !world->starts && !world->pokes && !world->failed_at) {
+		world_run(world, 300);
+		world->judged_until = world->clock;
+		world->half_period = 2;
+		player_prepare(player);
+		player_check_encoder(player, random);
+		player_check_outputs(player, random);
+	}
 	world_run(world, 300);
 }

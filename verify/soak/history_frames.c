@@ -57,7 +57,7 @@ static void print_frame(struct player *player, const struct action *action, uint
 
 	if (!player->print)
 		return;
-	plot_print(action, text, sizeof text);
+	scenario_print(action, text, sizeof text);
 	fprintf(player->print, "%8llu  %s", (unsigned long long)begin, text);
 	if (action->operation == PASSO_OPERATION_READ)
 		for (unsigned i = 0; i < action->length; i++)
@@ -68,7 +68,7 @@ static void print_frame(struct player *player, const struct action *action, uint
 	if (lost)
 		fprintf(player->print, " (reset)");
 	if (action->event < EVENT_KINDS)
-		fprintf(player->print, "   [%s at %llu %+d, %c]", plot_event_name(action->event),
+		fprintf(player->print, "   [%s at %llu %+d, %c]", scenario_event_name(action->event),
 		    (unsigned long long)action->event_clock, action->offset, action->point);
 	fprintf(player->print, "\n");
 }
@@ -119,9 +119,9 @@ static void print_pin(struct player *player, const struct action *action)
 
 	if (!player->print)
 		return;
-	plot_print(action, text, sizeof text);
+	scenario_print(action, text, sizeof text);
 	fprintf(player->print, "%8llu  %s   [%s at %llu %+d]\n", (unsigned long long)action->at, text,
-	    plot_event_name(action->event), (unsigned long long)action->event_clock, action->offset);
+	    scenario_event_name(action->event), (unsigned long long)action->event_clock, action->offset);
 }
 
 /* Schedules the edges of an action. */
@@ -146,25 +146,25 @@ static void player_pin(struct world *world, const struct action *action)
 	world_add_pin(world, pin);
 }
 
-void player_actions(struct player *player, const struct plot *plot, size_t scout_from)
+void player_actions(struct player *player, const struct scenario *scenario, size_t scout_from)
 {
 	struct world *world = player->world;
 
-	for (size_t i = 0; i < plot->count; i++) {
-		const struct action *action = &plot->actions[i];
+	for (size_t i = 0; i < scenario->count; i++) {
+		const struct action *action = &scenario->actions[i];
 		if (action->kind == ACTION_FRAME)
 			continue;
 		print_pin(player, action);
 		player->counts->hit += action->event < EVENT_KINDS ? 1u : 0u;
 		player_pin(world, action);
 	}
-	for (size_t i = 0; i < plot->count; i++) {
+	for (size_t i = 0; i < scenario->count; i++) {
 		if (i == scout_from)
 			world->events_from = world->clock;
-		if (plot->actions[i].kind == ACTION_FRAME)
-			player_frame(player, &plot->actions[i]);
+		if (scenario->actions[i].kind == ACTION_FRAME)
+			player_frame(player, &scenario->actions[i]);
 	}
-	if (scout_from >= plot->count && scout_from != SIZE_MAX)
+	if (scout_from >= scenario->count && scout_from != SIZE_MAX)
 		world->events_from = world->clock;
 	/* pin edges still to come */
 	if (world->pin_next < world->pin_count && world->pins[world->pin_count - 1u].clock > world->clock)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Internal: plays a plot to a world and records the replies, for history.c.
+ * Internal: plays a scenario to a world and records the replies, for history.c.
  */
 #ifndef SOAK_HISTORY_PLAYER_H
 #define SOAK_HISTORY_PLAYER_H
@@ -42,20 +42,46 @@ static inline uint64_t player_executed_at(
 
 /* Sends a frame, with its fault if it has one. */
 void player_frame(struct player *player, const struct action *action);
-/* Plays all actions of a plot; events after action `scout_from` are recorded. */
-void player_actions(struct player *player, const struct plot *plot, size_t scout_from);
+/* Plays all actions of a scenario; events after action `scout_from` are recorded. */
+void player_actions(struct player *player, const struct scenario *scenario, size_t scout_from);
 /* Converts the reply to a complete frame into facts for the judge. */
 void player_note_reply(
     struct player *player, const struct action *action, const uint32_t *mosi, size_t count, uint64_t begin);
 /* Before that: measures, opens all switches, and ends what a machine waits for. */
 void player_end_machine(struct player *player);
 /* Any frames while anything happens at the pins; then the settings that the end of a history needs. */
-void player_pokes(struct player *player, struct plot_random *random);
+void player_pokes(struct player *player, struct scenario_random *random);
 /* Brings the core to rest and, unless `brief`, makes one more move. */
-void player_end(struct player *player, struct plot_random *random, bool brief);
+void player_end(struct player *player, struct scenario_random *random, bool brief);
 /* Chooses a target for a disturbance among the events of the scout. */
-void player_aim(
-    const struct world *scout, struct plot_random *random, enum plot_kind kind, struct action *action);
+void player_aim(const struct world *scout, struct scenario_random *random, enum scenario_kind kind,
+    struct action *action);
+
+/* Sends a frame; whether it was accepted. */
+bool player_send(struct player *player, enum passo_operation operation, uint16_t address,
+    const uint32_t *words, unsigned length);
+uint32_t player_state_of(struct player *player, unsigned channel);
+
+#define PLAYER_STEPS_MAX 64u
+/* The clocks of the first edges of STEP that make a step; `both`: all of them do. */
+unsigned player_find_steps(
+    const struct world *world, uint64_t from, unsigned bit, bool both, uint64_t *clocks);
+/* At rest, with empty queues: one more move, of shaped ramps. */
+void player_shaped_move(struct player *player, struct scenario_random *random, unsigned channel);
+
+/* The first clock from another one on in which a channel is running, or is not; 0: none. */
+uint64_t player_runs(const struct player *player, unsigned channel, uint64_t from, bool running);
+/* STEP and DIR of channel 0 of a few clocks, full rate, and RUN. */
+void player_prepare(struct player *player);
+/* After that, at rest: lines at a constant speed for so many ticks. Returns a clock before it. */
+uint64_t player_start(
+    struct player *player, const struct passo_line *lines, size_t count, uint64_t velocity, uint32_t ticks);
+/* Until it is at rest again; returns the clock in which it is running first. */
+uint64_t player_move(
+    struct player *player, const struct passo_line *lines, size_t count, uint64_t velocity, uint32_t ticks);
+/* At rest, with a machine: its encoders, its outputs. */
+void player_check_encoder(struct player *player, struct scenario_random *random);
+void player_check_outputs(struct player *player, struct scenario_random *random);
 
 /* A move of constant speed, and the clock before it. */
 struct last_move {

@@ -56,16 +56,16 @@ static enum passo_reply send(struct player *player, const struct poke *poke)
 	return reply;
 }
 
-static void poke(struct player *player, struct plot_random *random)
+static void poke(struct player *player, struct scenario_random *random)
 {
 	struct world *world = player->world;
 	const bool stopped = world->model.channel[0].motion.state == PASSO_STATE_STOPPED;
 	const struct poke poke = poke_any(random, stopped);
 
-	if (plot_chance(random, 20))
-		world->shafts[plot_draw(random, player_axes(player))].due +=
-		    (int32_t)plot_draw(random, 4000) - 1000;
-	world_run(world, plot_draw(random, 200));
+	if (scenario_chance(random, 20))
+		world->shafts[scenario_draw(random, player_axes(player))].due +=
+		    (int32_t)scenario_draw(random, 4000) - 1000;
+	world_run(world, scenario_draw(random, 200));
 	const enum passo_reply reply = send(player, &poke);
 	player->counts->refused += reply == PASSO_REPLY_REFUSED ? 1u : 0u;
 	if (reply != PASSO_REPLY_OK && reply != PASSO_REPLY_REFUSED)
@@ -83,54 +83,56 @@ static void write(struct player *player, uint16_t address, uint32_t word)
 		    address, (int)reply);
 }
 
-static uint32_t some_trigger(struct plot_random *random, unsigned axes)
+static uint32_t some_trigger(struct scenario_random *random, unsigned axes)
 {
-	return (1u + plot_draw(random, 5)) << PASSO_CHANNEL_TRIGGER_SOURCE_LSB
-	     | plot_draw(random, axes) << PASSO_CHANNEL_TRIGGER_AXIS_LSB
-	     | plot_draw(random, 2) << PASSO_CHANNEL_TRIGGER_FALLING_LSB
-	     | plot_draw(random, 4) << PASSO_CHANNEL_TRIGGER_ACTION_LSB | 1u << PASSO_CHANNEL_TRIGGER_ARM_LSB;
+	return (1u + scenario_draw(random, 5)) << PASSO_CHANNEL_TRIGGER_SOURCE_LSB
+	     | scenario_draw(random, axes) << PASSO_CHANNEL_TRIGGER_AXIS_LSB
+	     | scenario_draw(random, 2) << PASSO_CHANNEL_TRIGGER_FALLING_LSB
+	     | scenario_draw(random, 4) << PASSO_CHANNEL_TRIGGER_ACTION_LSB
+	     | 1u << PASSO_CHANNEL_TRIGGER_ARM_LSB;
 }
 
 /* What would seldom become of single pokes: a laser, a raster, a compare, points of shapes, a profile that
  * follows an encoder, and a motion. */
-static void set_up(struct player *player, struct plot_random *random)
+static void set_up(struct player *player, struct scenario_random *random)
 {
 	struct world *world = player->world;
 	const unsigned axes = player_axes(player);
-	const uint32_t filter = plot_draw(random, 4);
+	const uint32_t filter = scenario_draw(random, 4);
 	const struct poke outputs = {PASSO_OPERATION_WRITE, channel_address(0, PASSO_CHANNEL_PWM_STEP),
-	    {1u << (14u + plot_draw(random, 8)), PASSO_CHANNEL_POWER_REFERENCE_RESET >> plot_draw(random, 8),
-		1u + plot_draw(random, 100),
-		plot_draw(random, axes) << PASSO_CHANNEL_COMPARE_PULSE_AXIS_LSB
-	            | (1u + plot_draw(random, 40)),
-		plot_draw(random, 4), 1u + plot_draw(random, 4)},
+	    {1u << (14u + scenario_draw(random, 8)),
+		PASSO_CHANNEL_POWER_REFERENCE_RESET >> scenario_draw(random, 8),
+		1u + scenario_draw(random, 100),
+		scenario_draw(random, axes) << PASSO_CHANNEL_COMPARE_PULSE_AXIS_LSB
+	            | (1u + scenario_draw(random, 40)),
+		scenario_draw(random, 4), 1u + scenario_draw(random, 4)},
 	    6};
 	const struct poke lines = poke_lines(random), ramps = poke_ramps(random);
 
 	for (unsigned a = 0; a < axes; a++) {
 		write(player, axis_address(0, a, PASSO_AXIS_ENABLE), 1);
-		if (plot_chance(random, 30))
+		if (scenario_chance(random, 30))
 			write(player, axis_address(0, a, PASSO_AXIS_INPUTS),
-			    plot_draw(random, 8) << PASSO_AXIS_INPUTS_LIMIT_SOFT_LSB);
-		world->shafts[a].coupled = plot_chance(random, 50);
+			    scenario_draw(random, 8) << PASSO_AXIS_INPUTS_LIMIT_SOFT_LSB);
+		world->shafts[a].coupled = scenario_chance(random, 50);
 		world->shafts[a].period = filter + 3u;
-		world->shafts[a].due = (int32_t)plot_draw(random, 4000) - 1000;
+		world->shafts[a].due = (int32_t)scenario_draw(random, 4000) - 1000;
 	}
 	for (unsigned bank = 0; bank < 3u; bank++)
-		write(player, (uint16_t)(PASSO_ADDRESS_COSINE_BASE + 256u * bank + plot_draw(random, 4)),
-		    plot_draw(random, 65536));
+		write(player, (uint16_t)(PASSO_ADDRESS_COSINE_BASE + 256u * bank + scenario_draw(random, 4)),
+		    scenario_draw(random, 65536));
 	write(player, channel_address(0, PASSO_CHANNEL_TRIGGER), some_trigger(random, axes));
 	write(player, channel_address(0, PASSO_CHANNEL_ENCODER_FILTER), filter);
-	write(player, channel_address(0, PASSO_CHANNEL_FOLLOW_LIMIT), 1u << (24u + plot_draw(random, 8)));
-	if (plot_chance(random, 50))
+	write(player, channel_address(0, PASSO_CHANNEL_FOLLOW_LIMIT), 1u << (24u + scenario_draw(random, 8)));
+	if (scenario_chance(random, 50))
 		write(player, channel_address(0, PASSO_CHANNEL_FOLLOW),
 		    1u << PASSO_CHANNEL_FOLLOW_FOLLOW_LSB
-		        | plot_draw(random, 2) << PASSO_CHANNEL_FOLLOW_WAIT_INDEX_LSB
-		        | plot_draw(random, axes) << PASSO_CHANNEL_FOLLOW_SOURCE_LSB
-		        | plot_draw(random, 8) << PASSO_CHANNEL_FOLLOW_SCALE_LSB);
+		        | scenario_draw(random, 2) << PASSO_CHANNEL_FOLLOW_WAIT_INDEX_LSB
+		        | scenario_draw(random, axes) << PASSO_CHANNEL_FOLLOW_SOURCE_LSB
+		        | scenario_draw(random, 8) << PASSO_CHANNEL_FOLLOW_SCALE_LSB);
 	send(player, &outputs);
-	for (unsigned fills = plot_chance(random, 10) ? RASTER_FILLS : plot_draw(random, 2); fills != 0u;
-	    fills--) {
+	for (unsigned fills = scenario_chance(random, 10) ? RASTER_FILLS : scenario_draw(random, 2);
+	    fills != 0u; fills--) {
 		const struct poke raster = poke_raster(random);
 
 		send(player, &raster);
@@ -171,14 +173,14 @@ static void tidy(struct player *player)
 	write(player, channel_address(0, PASSO_CHANNEL_COMMAND), abort);
 }
 
-void player_pokes(struct player *player, struct plot_random *random)
+void player_pokes(struct player *player, struct scenario_random *random)
 {
 	struct world *world = player->world;
-	const bool silent = plot_chance(random, 20);
+	const bool silent = scenario_chance(random, 20);
 
 	set_up(player, random);
 	const uint64_t end = world->clock + POKES;
-	world->noisy = plot_draw(random, 1u << PASSO_INPUT_COUNT);
+	world->noisy = scenario_draw(random, 1u << PASSO_INPUT_COUNT);
 	world->noise = random->state;
 	while (world->clock < end && !world->failed_at)
 		poke(player, random);

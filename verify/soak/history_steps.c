@@ -3,12 +3,10 @@
  */
 #include "history_player.h"
 
-#define STEPS_MAX 64u
 /* Clocks by which a step may be early or late at full rate: a substep ends with a clock. */
 #define ROUNDING 2u
 
-/* The clocks of the first edges of STEP that make a step; `both`: all of them do. */
-static unsigned find_steps(
+unsigned player_find_steps(
     const struct world *world, uint64_t from, unsigned bit, bool both, uint64_t *clocks)
 {
 	unsigned edges = 0, count = 0;
@@ -18,7 +16,7 @@ static unsigned find_steps(
 
 		if (world->rows[row].clock < from || (changed >> bit & 1u) == 0u)
 			continue;
-		if ((both || edges % 2u == 0u) && count < STEPS_MAX)
+		if ((both || edges % 2u == 0u) && count < PLAYER_STEPS_MAX)
 			clocks[count++] = world->rows[row].clock;
 		edges++;
 	}
@@ -28,10 +26,10 @@ static unsigned find_steps(
 void player_check_steps(struct player *player, unsigned channel, unsigned a, const struct last_move *move)
 {
 	struct world *world = player->world;
-	uint64_t clocks[STEPS_MAX];
+	uint64_t clocks[PLAYER_STEPS_MAX];
 	const uint32_t steps = move->line.steps[a];
 	const unsigned bit = channel * player_axes(player) + a;
-	const unsigned count = find_steps(world, move->from, bit, move->both_edges[a], clocks);
+	const unsigned count = player_find_steps(world, move->from, bit, move->both_edges[a], clocks);
 	/* Clocks per substep, UQ48.16, and what a step may be off: all of a substep if steps are not evenly
 	 * in them. */
 	const uint64_t substep = (UINT64_C(1) << 63) / (move->velocity >> 1) * PASSO_RATE_ONE / move->rate;

@@ -164,9 +164,13 @@ void judge_history(struct world *world, struct judge_counts *counts)
 
 	sort_facts(world);
 	power_up(&judge);
+	const uint64_t until = world->judged_until != 0u ? world->judged_until : UINT64_MAX;
+
 	for (size_t i = 0; i < world->fact_count && !world->failed_at; i++) {
 		const struct world_fact *fact = &world->facts[i];
 
+		if (fact->clock >= until)
+			break;
 		see_rows(&judge, fact->clock);
 		const bool same = judge.row < world->row_count && world->rows[judge.row].clock == fact->clock;
 		judge.now = fact->clock;
@@ -176,5 +180,5 @@ void judge_history(struct world *world, struct judge_counts *counts)
 		if (!world->failed_at)
 			do_fact(&judge, fact, same ? &world->rows[judge.row].pins : &judge.pins);
 	}
-	see_rows(&judge, UINT64_MAX);
+	see_rows(&judge, until);
 }

@@ -20,7 +20,7 @@
 struct options {
 	uint64_t seed, first, count;
 	const char *library, *folder;
-	unsigned set; /* PLOT_SETS: all */
+	unsigned set; /* SCENARIO_SETS: all */
 	bool print, keep_on, driver, brief, blind, machine, tries, pokes, starts, mutants, off;
 };
 
@@ -31,7 +31,7 @@ static bool parse(int argc, char **argv, struct options *options)
 	*options = (struct options){.seed = strtoull(argv[1], NULL, 10),
 	    .first = strtoull(argv[2], NULL, 10),
 	    .count = strtoull(argv[3], NULL, 10),
-	    .set = PLOT_SETS};
+	    .set = SCENARIO_SETS};
 	for (int i = 4; i < argc; i++) {
 		if (strcmp(argv[i], "--print") == 0)
 			options->print = true;
@@ -110,10 +110,11 @@ static void say_history(const struct history_counts *counts, uint64_t played)
 #undef SAID
 
 	say_all(table, COUNT(table), counts, played);
-	for (unsigned i = 0; i < PLOT_KINDS; i++)
-		printf("count kind:%s %" PRIu64 "\n", plot_kind_name((enum plot_kind)i), counts->kinds[i]);
+	for (unsigned i = 0; i < SCENARIO_KINDS; i++)
+		printf("count kind:%s %" PRIu64 "\n", scenario_kind_name((enum scenario_kind)i),
+		    counts->kinds[i]);
 	for (unsigned i = 0; i < EVENT_KINDS; i++)
-		printf("count event:%s %" PRIu64 "\n", plot_event_name((enum world_event_kind)i),
+		printf("count event:%s %" PRIu64 "\n", scenario_event_name((enum world_event_kind)i),
 		    counts->events[i]);
 }
 
@@ -167,7 +168,7 @@ int main(int argc, char **argv)
 		char path[WORLD_TEXT];
 		FILE *record = NULL;
 
-		if (options.set != PLOT_SETS && number % PLOT_SETS != options.set)
+		if (options.set != SCENARIO_SETS && number % SCENARIO_SETS != options.set)
 			continue;
 		if (options.folder) {
 			snprintf(path, sizeof path, "%s/%" PRIu64 ".txt", options.folder, number);

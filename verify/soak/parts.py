@@ -18,14 +18,14 @@ from rich.console import Console
 
 from verify.soak.program import BUILD, HERE, KINDS, Failure, play_program, say
 
-# Must match plot_parameters() in plot.c.
+# Must match scenario_parameters() in scenario.c.
 SETS = (
     Parameters(1, 1, 7, 5, 3),
     Parameters(1, 3, 7, 2, 2, step_reset=5, dir_reset=3, enable_reset=6),
     Parameters(2, 2, 7, 3, 4, step_reset=1, dir_reset=4, enable_reset=15),
 )
 DRIVER_SET = 2  # must match BRIDGE_SET in bridge.h
-# Must match plot_machine_parameters() in plot_machine.c.
+# Must match scenario_machine_parameters() in scenario_machine.c.
 MACHINE = Parameters(1, 3, 7, 5, 5, inputs=1, encoders=1, outputs=1)
 CHUNK = 50  # histories per process
 

@@ -5,7 +5,7 @@
 #define SOAK_POKE_H
 
 #include "passo_frame.h"
-#include "plot.h"
+#include "scenario.h"
 
 struct poke {
 	enum passo_operation operation;
@@ -15,10 +15,10 @@ struct poke {
 };
 
 /* Lines or ramps for a while of motion, and values of a raster. */
-struct poke poke_lines(struct plot_random *random);
-struct poke poke_ramps(struct plot_random *random);
-struct poke poke_raster(struct plot_random *random);
+struct poke poke_lines(struct scenario_random *random);
+struct poke poke_ramps(struct scenario_random *random);
+struct poke poke_raster(struct scenario_random *random);
 /* Any frame; CLEAR half of the time while the channel is `stopped`, as nothing else moves it then. */
-struct poke poke_any(struct plot_random *random, bool stopped);
+struct poke poke_any(struct scenario_random *random, bool stopped);
 
 #endif

@@ -134,6 +134,8 @@ struct world {
 	size_t event_count, event_room;
 	uint64_t events_from;
 	uint64_t idle_since[PASSO_CHANNELS_MAX];
+	uint64_t known_from;   /* then come the moves of which all is known */
+	uint64_t judged_until; /* from then on only what is expected of each single move; 0: to the end */
 	struct passo_inputs levels;                /* of the inputs at rest */
 	uint64_t noise;                            /* state of the random changes of inputs; 0: none */
 	uint32_t noisy;                            /* a bit for each input that changes */

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "grbl_machine.h"
 
-#define POLLS 2000u /* of the feed in a second, at least */
+#define POLLS 2000u   /* of the feed in a second, at least */
+#define RESERVES 200u /* in a second: the core has so much, however the lines come */
 
 #define PIN_CLOCKS ((CORE_HZ + 999999u) / 1000000u) /* 1 us */
 #define MILLION ((int64_t)PASSO_GCODE_MILLION)
@@ -45,8 +46,10 @@ static void grbl_defaults(struct passo_grbl_settings *settings)
 void grbl_machine(
     struct passo_grbl_setup *setup, const struct passo *passo, const struct passo_storage_pages *pages)
 {
-	*setup = (struct passo_grbl_setup){
-	    .path = {.machine = *passo_machine(passo), .profile = PASSO_PROFILE_LINEAR, .polls = POLLS},
+	*setup = (struct passo_grbl_setup){.path = {.machine = *passo_machine(passo),
+					       .profile = PASSO_PROFILE_LINEAR,
+					       .reserve_clocks = CORE_HZ / RESERVES,
+					       .polls = POLLS},
 	    .pins = {.step_low_ns = PIN_CLOCKS, .dir_setup_ns = PIN_CLOCKS, .dir_hold_ns = PIN_CLOCKS},
 	    .limits_low = LIMITS_LOW,
 	    .limits_high = LIMITS_HIGH,

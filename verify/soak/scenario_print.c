@@ -2,9 +2,9 @@
  * Descriptions of actions and events.
  */
 #include "address.h"
-#include "plot.h"
+#include "scenario.h"
 
-const char *plot_event_name(enum world_event_kind kind)
+const char *scenario_event_name(enum world_event_kind kind)
 {
 	static const char *const names[EVENT_KINDS] = {"state", "gap", "stop", "slew tick", "rate", "line",
 	    "ramp", "tick", "STEP", "DIR", "waiting step", "quiet"};
@@ -34,7 +34,7 @@ static const char *register_name(uint16_t address)
 	                                            : "";
 }
 
-void plot_print(const struct action *action, char *text, size_t size)
+void scenario_print(const struct action *action, char *text, size_t size)
 {
 	static const char *const operations[] = {"", "read", "write", "push"};
 	static const char *const faults[] = {"", " (bad CRC)", " (repeated)", " (cut)", " (bad value)"};

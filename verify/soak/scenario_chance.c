@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * Random numbers.
  */
-#include "plot.h"
+#include "scenario.h"
 
-void plot_seed(struct plot_random *random, uint64_t seed, uint64_t number)
+void scenario_seed(struct scenario_random *random, uint64_t seed, uint64_t number)
 {
 	uint64_t z = seed * UINT64_C(0x9E3779B97F4A7C15) + number + 1u;
 
@@ -15,7 +15,7 @@ void plot_seed(struct plot_random *random, uint64_t seed, uint64_t number)
 	random->state = z | 1u;
 }
 
-uint32_t plot_draw(struct plot_random *random, uint32_t below)
+uint32_t scenario_draw(struct scenario_random *random, uint32_t below)
 {
 	uint64_t x = random->state;
 
@@ -26,18 +26,18 @@ uint32_t plot_draw(struct plot_random *random, uint32_t below)
 	return below == 0u ? 0u : (uint32_t)((x * UINT64_C(0x2545F4914F6CDD1D) >> 32) % below);
 }
 
-bool plot_chance(struct plot_random *random, uint32_t percent)
+bool scenario_chance(struct scenario_random *random, uint32_t percent)
 {
-	return plot_draw(random, 100) < percent;
+	return scenario_draw(random, 100) < percent;
 }
 
-uint32_t plot_log(struct plot_random *random, uint32_t from, uint32_t to)
+uint32_t scenario_log(struct scenario_random *random, uint32_t from, uint32_t to)
 {
 	uint32_t doublings = 0;
 
 	while (from << doublings < to)
 		doublings++;
-	const uint32_t low = from << plot_draw(random, doublings + 1u);
-	const uint32_t value = low + plot_draw(random, low);
+	const uint32_t low = from << scenario_draw(random, doublings + 1u);
+	const uint32_t value = low + scenario_draw(random, low);
 	return value > to ? to : value;
 }
