@@ -69,8 +69,10 @@ def _rule(register: Register) -> str:
     return rule
 
 
-def _case(address: str, register: Register, bits: int) -> str:
-    return f"{{{address}_BASE[{bits - 1}:3], 3'b???}}:" if register.count else f"{address}:"
+def _is(address: str, register: Register, bits: int) -> str:
+    if register.count:
+        return f"address[{bits - 1}:3] == {address}_BASE[{bits - 1}:3]"
+    return f"address == {address}" + ("[7:0]" if bits > 8 else "")
 
 
 def verilog(source: Source) -> str:
@@ -79,21 +81,21 @@ def verilog(source: Source) -> str:
         "// SPDX-License-Identifier: MIT",
         f"// {GENERATED}",
         "// What each register takes, to be included in passo_rules. It is flags, and in its lower 5 bits",
-        "// the highest bit that a word may have; without a flag there is no register. No `default`:",
-        "// yosys would make a ROM of the table, with registers of its own for the address.",
-        "/* verilator lint_off CASEOVERLAP */",
+        "// the highest bit that a word may have; without a flag there is no register.",
+        "// Not a `case`: yosys would make a ROM of it, with registers of its own for the address.",
         "",
         f"localparam [12:0] RULE_SHAPE = {_rule(_shape(source.core))};",
     ]
     for block in source.core.walk():
         name, bits = f"{block.name.lower()}_rule", block.address_bits
-        rows = [(_case(address, of, bits), f"{name} = {_rule(of)};") for address, of in _rows(block)]
-        width = bits if block is source.core else min(bits, 8)
-        read = "{4'd0, address}" if block is source.core else "address"
-        lines += ["", f"function [12:0] {name}(input [{min(bits, 8) - 1}:0] address);", f"  casez ({read})"]
-        lines += [f"    {row}" for row in aligned([*rows, (f"{width}'b{'?' * width}:", f"{name} = 13'd0;")])]
-        lines += ["  endcase", "endfunction"]
-    return "\n".join([*lines, "", "/* verilator lint_on CASEOVERLAP */", ""])
+        rows = aligned(
+            [(f"{{13{{{_is(address, of, bits)}}}}}", f"& ({_rule(of)})") for address, of in _rows(block)]
+        )
+        lines += ["", f"function [12:0] {name}(input [{min(bits, 8) - 1}:0] address);"]
+        lines += [f"  {name} =", f"    {rows[0]}", *(f"    | {row}" for row in rows[1:])]
+        lines[-1] += ";"
+        lines.append("endfunction")
+    return "\n".join([*lines, ""])
 
 
 def _members(register: Register) -> Iterator[str]:
