@@ -124,7 +124,7 @@ REFUSED = [
     ("move steps=100 profile=linear total_time=-1 ramp_time=0", "must not be negative"),
     ("move steps=100 profile=linear total_time=0.0000001 ramp_time=0", "NO_TIME"),
     ("move steps=1,,2 profile=linear total_time=1 ramp_time=0", "whole numbers"),
-    ("move steps=100 steps=100 profile=linear total_time=1 ramp_time=0", "twice"),
+    ("move steps=100 steps=100 profile=linear total_time=1 ramp_time=0", "duplicate key"),
     ("move steps=100 profile=user total_time=0.1 ramp_time=0.02", "table is missing"),
     ("move steps=1073741823 profile=linear total_time=0.01 ramp_time=0", "TOO_FAST"),
     ("override 0", "1 to 100"),

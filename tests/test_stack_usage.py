@@ -101,5 +101,5 @@ def test_a_function_that_became_part_of_another_keeps_its_name(monkeypatch: pyte
         connect(found, calls)
     with pytest.raises(StackError, match="listed but without indirect calls: outer"):
         connect(found, {"inner": ["hook"], "outer": ["leaf"]})
-    with pytest.raises(StackError, match="inner makes an indirect call and is not listed"):
+    with pytest.raises(StackError, match="inner makes an indirect call but is not listed"):
         connect(found, {"start": ["hook"]})

@@ -14,7 +14,7 @@ from passo.toolchain import paths
 from cocotb_tests.helpers.bench import begin
 
 HEADER = paths.core / "passo_core_encoder.h"
-SOURCES = [paths.core / f"passo_{name}.c" for name in ("encoder", "following", "follower")]
+SOURCES = [paths.core / f"passo_{name}.c" for name in ("core_encoder", "following", "follower")]
 
 
 @cache

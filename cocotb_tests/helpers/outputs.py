@@ -21,7 +21,7 @@ INPUTS = (
     *("running", "running_next", "velocity", "rate", "waits", "step_made", "step_direction"),
 )
 OUTPUTS = ("outputs", "power", "compare", "raster_room", "raster_empty", "overflow", "quiet", "refusal")
-MODEL = ("outputs", "pwm", "power", "changes", "raster", "compare")  # sources, passo_*.c
+MODEL = ("core_outputs", "pwm", "power", "changes", "raster", "compare")  # sources, passo_*.c
 PERIOD = 1 << 24  # of the PWM, in units of pwm_step
 RATE_ONE = 1 << 16
 HALF = 1 << 31  # a velocity

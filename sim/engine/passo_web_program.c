@@ -19,6 +19,7 @@ enum {
 /* The machine as the page gives it, in the order of sim/passo/web.py. */
 struct web_machine {
 	double clock_hz, axes, junction_deviation, arc_tolerance, profile;
+	double core_axes; /* a frame holds more lines for a core with fewer, which the ramps depend on */
 	double step_high, step_low, dir_setup, dir_hold; /* clocks */
 	struct {
 		double steps_per_mm, speed, acceleration, jump, jerk;
@@ -88,7 +89,7 @@ static uint32_t check(void)
 			web_write(NULL, passo_gcode_error_text(error));
 		while (error == PASSO_GCODE_OK && passo_gcode_next(gcode, &action)) {
 			if (action.kind == PASSO_GCODE_PROBE) {
-				web_write(NULL, "there is no probe here");
+				web_write(NULL, "no probe is fitted");
 				return number;
 			}
 			if (action.kind == PASSO_GCODE_END)
@@ -182,7 +183,7 @@ EXPORT("program") char *web_program(uint32_t length)
 /* Plays the program on the machine. 0: played; the number of a bad line, or -1: what is wrong was written. */
 EXPORT("play") int32_t web_play(void)
 {
-	if (!web_start((uint32_t)web.machine.axes, (uint32_t)web.machine.clock_hz)) {
+	if (!web_start((uint32_t)web.machine.core_axes, (uint32_t)web.machine.clock_hz)) {
 		web_write(NULL, "out of memory");
 		return -1;
 	}

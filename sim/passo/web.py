@@ -19,6 +19,7 @@ from passo.machine_file import MachineFile, read_machine
 from passo.native import planner
 from passo.output import make_folder, write_text
 from passo.report_page import SCRIPTS, page
+from passo.run import parameters_for
 from passo.toolchain import paths, short
 
 FOLDERS = (paths.driver, paths.console, paths.protocol, paths.planner, paths.gcode, paths.core)
@@ -56,7 +57,8 @@ def numbers(machine: MachineFile) -> list[float]:
         for axis in settings.axes
         for limit in (axis.steps_per_mm, axis.speed, axis.acceleration, axis.jump, axis.jerk)
     ]
-    return [float(number) for number in (*common, machine.gcode.arc_tolerance, profile, *pin_clocks, *limits)]
+    cores = (profile, parameters_for(len(settings.axes)).axes)
+    return [float(number) for number in (*common, machine.gcode.arc_tolerance, *cores, *pin_clocks, *limits)]
 
 
 def facts() -> str:
