@@ -135,7 +135,7 @@ REFUSED = [
     ("table 16 1", "row must be"),
     ("turn axis=9 steps_per_turn=200 rpm=1 acceleration=1", "0 to 3"),
     ("rpm 5", "NOT_TURNING"),
-    ("\x01\x02", "not text"),
+    ("\x01\x02", "not printable"),
     ("x" * 256, "longer than 255"),
     ("move " + "9" * 3000, "longer than 255"),
 ]
