@@ -2,6 +2,7 @@
 """The installed package, from a wheel in an environment of its own, outside of the repository."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -148,7 +149,10 @@ def test_a_bad_build_folder_is_told_in_one_line(installed: Installed, tmp_path: 
     moves.write_text(MOVES)
     done = installed.run("passo", "run", moves, "--engine", "rtl", PASSO_BUILD=str(tmp_path / folder))
     assert done.returncode == 1 and str(tmp_path / folder) in done.stderr and done.stderr.count("\n") == 1
-    assert "PASSO_BUILD names another folder" in done.stderr or "do not support a path with a space" in done.stderr
+    assert (
+        "PASSO_BUILD names another folder" in done.stderr
+        or "do not support a path with a space" in done.stderr
+    )
     moves.unlink()
 
 
