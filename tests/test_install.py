@@ -2,7 +2,6 @@
 """The installed package, from a wheel in an environment of its own, outside of the repository."""
 
 import os
-import re
 import shutil
 import subprocess
 import sys
