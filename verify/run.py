@@ -42,17 +42,12 @@ def _listed(chosen: Sequence[str], seed: int) -> list[str]:
     return [*(["--only", ",".join(chosen)] if chosen else []), "--seed", str(seed)]
 
 
-def _module(name: str) -> str:
-    return (
-        name if name.endswith(".c") or name in ("rtl", "c") or name.startswith("passo_") else f"passo_{name}"
-    )
-
-
 def parts() -> dict[str, Part]:
     """The parts, the quick ones first."""
     modules = [source.stem for source in rtl_sources()]
     files = [source.name for folder in FOLDERS.values() for source in sources(folder)]
-    mutated = {*modules, *(name.removeprefix("passo_") for name in modules), *files, "rtl", "c"}
+    mutated = {name: name for name in ("rtl", "c", *modules, *files)}  # as the mutants call it
+    mutated |= {name.removeprefix("passo_"): name for name in modules}
     return {
         "formal": Part(
             "proofs of the promises of the RTL",
@@ -82,7 +77,7 @@ def parts() -> dict[str, Part]:
             "small faults, seen by those who do not know the model",
             "verify.mutants.run",
             mutated,
-            lambda chosen, options: _listed([_module(name) for name in chosen], options.seed),
+            lambda chosen, options: _listed([mutated[name] for name in chosen], options.seed),
         ),
     }
 

@@ -57,8 +57,9 @@ def numbers(machine: MachineFile) -> list[float]:
         for axis in settings.axes
         for limit in (axis.steps_per_mm, axis.speed, axis.acceleration, axis.jump, axis.jerk)
     ]
-    cores = (profile, parameters_for(len(settings.axes)).axes)
-    return [float(number) for number in (*common, machine.gcode.arc_tolerance, *cores, *pin_clocks, *limits)]
+    core_axes = parameters_for(len(settings.axes)).axes
+    members = (*common, machine.gcode.arc_tolerance, profile, core_axes, *pin_clocks, *limits)
+    return [float(number) for number in members]
 
 
 def facts() -> str:

@@ -9,6 +9,7 @@ import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -116,9 +117,9 @@ def place(
     """Place and route for a clock of `mhz`; `clock_ports` are clock inputs, `pins` the pin file."""
     device, family = design.device, design.device.family
     netlist = synthesize(design)
-    module = module_of(design, netlist)
+    top = cache(partial(module_of, design, netlist))
     constraints = "".join(
-        f"create_clock -period {1000 / mhz:.4f} [{family.clock(module, port)}]\n"
+        f"create_clock -period {1000 / mhz:.4f} [{family.clock(top, port)}]\n"
         for port, mhz in clock_ports.items()
     )
     settings = [repr(device.part), constraints, f"seed {seed}", f"{mhz} MHz", versions(family.programs)]
@@ -130,7 +131,7 @@ def place(
         if constraints:
             arguments += ["--sdc", CONSTRAINTS]
         chosen = pins
-        if not pins and (any_pins := family.any_pins(device.pins, module)):
+        if not pins and (any_pins := family.any_pins(device.pins, top)):
             chosen = folder / f"pins.{family.pins_suffix}"
             chosen.write_text(any_pins)
         arguments += family.placing(device.part, relative(chosen, folder) if chosen else "")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What the flow needs to know of a family of FPGAs."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,7 +10,8 @@ NETLIST, PLACED, CONSTRAINTS = "netlist.json", "placed", "clocks.sdc"
 
 # Clock and VCO in MHz, and the parameters of passo_pll that make them.
 Possible = Iterator[tuple[float, float, dict[str, int | str]]]
-Module = Mapping[str, Any]  # the top, as in the JSON of yosys
+Module = Mapping[str, Any]  # as in the JSON of yosys
+Top = Callable[[], Module]  # reads the top, which not every family needs
 
 
 @dataclass(frozen=True)
@@ -61,7 +62,7 @@ class Family:
         """Change the synthesized netlist; returns the number of registers that moved into block RAMs."""
         raise NotImplementedError
 
-    def clock(self, module: Module, port: str) -> str:
+    def clock(self, top: Top, port: str) -> str:
         """The clock of a port, as SDC names it."""
         return f"get_ports {port}"
 
@@ -69,7 +70,7 @@ class Family:
         """Options of the placer for a pin file; without a file it chooses the pins."""
         raise NotImplementedError
 
-    def any_pins(self, numbers: Sequence[int], module: Module) -> str:
+    def any_pins(self, numbers: Sequence[int], top: Top) -> str:
         """A pin file for a design without a board; empty: the placer chooses the pins."""
         return ""
 

@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 from functools import cache
 from importlib.resources import as_file, files
 
-from passo_fpga.families.family import PLACED, Family, Module, Pin, Possible
+from passo_fpga.families.family import PLACED, Family, Module, Pin, Possible, Top
 
 # Configuration functions of pins that stay active unless the packer releases them. Those of the other
 # configuration modes (D0, DIN, WE_N, ...) end with the configuration.
@@ -19,15 +19,16 @@ _RELEASES = {
 
 
 class _Gowin(Family):
-    def clock(self, module: Module, port: str) -> str:
+    def clock(self, top: Top, port: str) -> str:
         """Its net: nextpnr does not propagate the clock of a port here."""
-        return f"get_nets {{{_clock_net(module, port)}}}"
+        return f"get_nets {{{_clock_net(top(), port)}}}"
 
     def placing(self, part: Sequence[str], pins: str) -> list[str]:
         return ["--vopt", f"cst={pins}", "--write", PLACED]
 
-    def any_pins(self, numbers: Sequence[int], module: Module) -> str:
+    def any_pins(self, numbers: Sequence[int], top: Top) -> str:
         """A pin for each port; SCLK on the clock network."""
+        module = top()
         first, second, *others = numbers
         fixed, rest = {"clk": first, "spi_sclk": second}, iter(others)
         lines = []
