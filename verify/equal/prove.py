@@ -23,7 +23,7 @@ from verify.equal.c_types import (
     convert,
     truth,
 )
-from verify.equal.coupling import Coupling, Link
+from verify.equal.coupling import Coupling, Link, completed
 from verify.equal.model import CLOCK, RESET, Model
 from verify.equal.rtl import Rtl, read_rtl
 
@@ -86,6 +86,12 @@ def _coupled(
         equal = _same(_term(name, terms), values[link.expression], link.signed)
         found[name] = equal if link.when is None else z3.Implies(truth(values[link.when]), equal)
     return found
+
+
+def _completed(coupling: Coupling, rtl: Rtl, root: Path) -> Coupling:
+    """The coupling with what has the same name on both sides."""
+    names = {"inputs": rtl.inputs, "outputs": rtl.outputs, "registers": rtl.registers}
+    return completed(coupling, names, Model(coupling, root).leaves())
 
 
 def _check_names(coupling: Coupling, rtl: Rtl) -> None:
@@ -216,6 +222,7 @@ def prove(coupling: Coupling, root: Path) -> Outcome:
     """
     begin = time.monotonic()
     rtl = read_rtl(coupling, root / "rtl")
+    coupling = _completed(coupling, rtl, root)
     _check_names(coupling, rtl)
     bits = sum(rtl.registers[name] for name in {_named(entry)[0] for entry in coupling.registers})
     questions = _questions(coupling, rtl, root)
@@ -269,6 +276,7 @@ def fault_seen(coupling: Coupling, root: Path) -> list[str]:
         Failure: No fault breaks anything.
     """
     rtl = read_rtl(coupling, root / "rtl", with_faults=True)
+    coupling = _completed(coupling, rtl, root)
     seen = []
     for assumed, goals in _questions(coupling, rtl, root):
         example = _example(assumed, goals)
