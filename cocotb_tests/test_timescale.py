@@ -155,7 +155,7 @@ async def a_slew_of_zero_counts_as_one_and_of_one_is_at_once(dut: HierarchyObjec
 
 @cocotb.test()
 async def a_stop_goes_to_zero_by_its_own_slew(dut: HierarchyObject) -> None:
-    """Stopping takes stop_slew and 0, whatever rate_target says; the next motion has its rate at once."""
+    """Stopping takes stop_slew and 0, whatever rate_target says; the next motion has its rate immediately."""
     bench = await Bench.begin(dut, rate_target=ONE, rate_slew=7, stop_slew=6000)
     bench.set(moving=1)
     await bench.run(50)

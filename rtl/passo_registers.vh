@@ -244,14 +244,14 @@ localparam CHANNEL_RATE_TARGET_BITS    = 17;
 localparam CHANNEL_RATE_TARGET_RESET   = 17'h10000;
 localparam CHANNEL_RATE_TARGET_DEFINED = 32'h0001FFFF;
 
-// Channel: Rate slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1.
+// Channel: Rate slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = immediately; 0 counts as 1.
 localparam CHANNEL_RATE_SLEW         = 8'h02;
 localparam CHANNEL_RATE_SLEW_LSB     = 0;
 localparam CHANNEL_RATE_SLEW_BITS    = 17;
 localparam CHANNEL_RATE_SLEW_RESET   = 17'h00400;
 localparam CHANNEL_RATE_SLEW_DEFINED = 32'h0001FFFF;
 
-// Channel: Stop slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1.
+// Channel: Stop slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = immediately; 0 counts as 1.
 localparam CHANNEL_STOP_SLEW         = 8'h03;
 localparam CHANNEL_STOP_SLEW_LSB     = 0;
 localparam CHANNEL_STOP_SLEW_BITS    = 17;
@@ -427,7 +427,7 @@ localparam CHANNEL_RASTER_LSB     = 0;
 localparam CHANNEL_RASTER_BITS    = 32;
 localparam CHANNEL_RASTER_DEFINED = 32'hFFFFFFFF;
 
-// Channel: Output levels. Sets the digital outputs at once, until a line changes them.
+// Channel: Output levels. Sets the digital outputs immediately, until a line changes them.
 localparam CHANNEL_OUTPUT_LEVELS              = 8'h30;
 localparam CHANNEL_OUTPUT_LEVELS_LEVELS_LSB   = 0;
 localparam CHANNEL_OUTPUT_LEVELS_LEVELS_BITS  = 8;

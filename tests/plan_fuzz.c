@@ -252,7 +252,7 @@ static struct passo_turning some_turning(void)
 	struct passo_turning turning = {
 	    .axis = (uint8_t)below(9),
 	    .steps_per_turn = (uint32_t)sized(16),
-	    .backwards = below(2) > 0,
+	    .backward = below(2) > 0,
 	    .top_rpm = quantity(),
 	    .acceleration = quantity(),
 	};
@@ -347,7 +347,7 @@ static struct passo_course some_course(void)
 {
 	struct passo_course course = {
 	    .axis = (uint8_t)below(below(20) > 0 ? PASSO_AXES_MAX : 256),
-	    .backwards = below(2) > 0,
+	    .backward = below(2) > 0,
 	    .top_speed = quantity(),
 	    .acceleration = quantity(),
 	};

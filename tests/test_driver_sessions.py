@@ -219,7 +219,7 @@ def test_a_stopped_core(first: Driver, name: str) -> None:
 
 @pytest.mark.parametrize("name", ["ESTOP", "ALARM"])
 def test_a_core_that_is_kept_stopped(first: Driver, name: str) -> None:
-    """It is open, and goes on when that is over."""
+    """It is open, and continues when that is over."""
     pin, active, idle = ("estop_n", 0, 1) if name == "ESTOP" else ("alarm", 1, 0)
     first.engine.engine.set(pin, active)
     first.engine.run(MS)

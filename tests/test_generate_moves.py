@@ -296,7 +296,7 @@ WRONG = {
     ),
     "default": ('default = "accelerate_time"', 'default = "jerk"', "jerk is no key before it"),
     "rule": ('excludes = "ramp_time"', 'excludes = "jerk"', "a rule for a key that is not there"),
-    "rule kind": ('needs = "acceleration"', 'wants = "acceleration"', "unknown rule wants"),
+    "rule kind": ('needs = "acceleration"', 'has = "acceleration"', "unknown rule has"),
     "key twice": ('"start_speed",\n  "speed",', '"speed",\n  "speed",', "speed is there twice"),
     "told by": ('told_by = "total_time"', 'told_by = "time"', "form in_time: no key time"),
     "profile": ('\nprofile = "jerk"', '\nprofile = "jerky"', "form jerk: which profile has it?"),

@@ -126,7 +126,7 @@ def test_an_event_at_a_trigger(tmp_path: Path) -> None:
 
 
 def test_arm(tmp_path: Path) -> None:
-    """The latch has the positions 3 + filter clocks after the edge, and the motion goes on."""
+    """The latch has the positions 3 + filter clocks after the edge, and the motion continues."""
     text = machine('filter = "20us"', 'role = "probe"\nat = 900\nside = "above"')
     text += event('do = "arm"\nsource = "probe"\ntime = "10ms"')
     run = play(tmp_path, text + MOVE)

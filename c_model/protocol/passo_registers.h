@@ -245,14 +245,14 @@
 #define PASSO_CHANNEL_RATE_TARGET_RESET   0x10000u
 #define PASSO_CHANNEL_RATE_TARGET_DEFINED 0x0001FFFFu
 
-/* Channel: Rate slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1. */
+/* Channel: Rate slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = immediately; 0 counts as 1. */
 #define PASSO_CHANNEL_RATE_SLEW         0x02u
 #define PASSO_CHANNEL_RATE_SLEW_LSB     0u
 #define PASSO_CHANNEL_RATE_SLEW_BITS    17u
 #define PASSO_CHANNEL_RATE_SLEW_RESET   0x00400u
 #define PASSO_CHANNEL_RATE_SLEW_DEFINED 0x0001FFFFu
 
-/* Channel: Stop slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1. */
+/* Channel: Stop slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = immediately; 0 counts as 1. */
 #define PASSO_CHANNEL_STOP_SLEW         0x03u
 #define PASSO_CHANNEL_STOP_SLEW_LSB     0u
 #define PASSO_CHANNEL_STOP_SLEW_BITS    17u
@@ -428,7 +428,7 @@
 #define PASSO_CHANNEL_RASTER_BITS    32u
 #define PASSO_CHANNEL_RASTER_DEFINED 0xFFFFFFFFu
 
-/* Channel: Output levels. Sets the digital outputs at once, until a line changes them. */
+/* Channel: Output levels. Sets the digital outputs immediately, until a line changes them. */
 #define PASSO_CHANNEL_OUTPUT_LEVELS              0x30u
 #define PASSO_CHANNEL_OUTPUT_LEVELS_LEVELS_LSB   0u
 #define PASSO_CHANNEL_OUTPUT_LEVELS_LEVELS_BITS  8u

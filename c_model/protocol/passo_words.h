@@ -340,8 +340,8 @@ static inline struct passo_watchdog passo_unpack_watchdog(uint32_t word)
 struct passo_channel_command {
 	bool zero;  /* Set the positions of the channel's axes to 0. */
 	bool clear; /* Clear cause and lost steps and leave STOPPED. */
-	bool abort; /* Hard stop: STOPPED at once, waiting steps dropped, no new pulse begins. */
-	bool stop;  /* Soft stop: rate to 0 by STOP_SLEW, then STOPPED. In IDLE, PREPARE and ARMED: STOPPED at once. */
+	bool abort; /* Hard stop: STOPPED immediately, waiting steps dropped, no new pulse begins. */
+	bool stop;  /* Soft stop: rate to 0 by STOP_SLEW, then STOPPED. In IDLE, PREPARE and ARMED: STOPPED immediately. */
 };
 
 static inline uint32_t passo_pack_channel_command(const struct passo_channel_command *word)

@@ -221,8 +221,8 @@ class ChannelCommandWord(Word):
 
     zero: bool = bits(3, 1, "w", False)  # Set the positions of the channel's axes to 0.
     clear: bool = bits(2, 1, "w", False)  # Clear cause and lost steps and leave STOPPED.
-    abort: bool = bits(1, 1, "w", False)  # Hard stop: STOPPED at once, waiting steps dropped, no new pulse begins.
-    stop: bool = bits(0, 1, "w", False)  # Soft stop: rate to 0 by STOP_SLEW, then STOPPED. In IDLE, PREPARE and ARMED: STOPPED at once.
+    abort: bool = bits(1, 1, "w", False)  # Hard stop: STOPPED immediately, waiting steps dropped, no new pulse begins.
+    stop: bool = bits(0, 1, "w", False)  # Soft stop: rate to 0 by STOP_SLEW, then STOPPED. In IDLE, PREPARE and ARMED: STOPPED immediately.
 
 
 @dataclass(frozen=True)
@@ -651,14 +651,14 @@ CHANNEL_RATE_TARGET_BITS = 17
 CHANNEL_RATE_TARGET_RESET = 0x10000
 CHANNEL_RATE_TARGET_DEFINED = 0x0001FFFF
 
-# Channel: Rate slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1.
+# Channel: Rate slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = immediately; 0 counts as 1.
 CHANNEL_RATE_SLEW = 0x02
 CHANNEL_RATE_SLEW_LSB = 0
 CHANNEL_RATE_SLEW_BITS = 17
 CHANNEL_RATE_SLEW_RESET = 0x00400
 CHANNEL_RATE_SLEW_DEFINED = 0x0001FFFF
 
-# Channel: Stop slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1.
+# Channel: Stop slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = immediately; 0 counts as 1.
 CHANNEL_STOP_SLEW = 0x03
 CHANNEL_STOP_SLEW_LSB = 0
 CHANNEL_STOP_SLEW_BITS = 17
@@ -834,7 +834,7 @@ CHANNEL_RASTER_LSB = 0
 CHANNEL_RASTER_BITS = 32
 CHANNEL_RASTER_DEFINED = 0xFFFFFFFF
 
-# Channel: Output levels. Sets the digital outputs at once, until a line changes them.
+# Channel: Output levels. Sets the digital outputs immediately, until a line changes them.
 CHANNEL_OUTPUT_LEVELS = 0x30
 CHANNEL_OUTPUT_LEVELS_LEVELS_LSB = 0
 CHANNEL_OUTPUT_LEVELS_LEVELS_BITS = 8

@@ -55,7 +55,7 @@ class Coupling:
     registers: dict[str, Link]
     free: dict[str, str]  # registers or inputs without coupling, and why
     invariants: dict[str, Link]  # hold before the clock, and are proved to hold after it
-    assumptions: dict[str, dict[str, str]]  # ``that`` holds of the inputs, ``because`` of a neighbour
+    assumptions: dict[str, dict[str, str]]  # ``that`` holds of the inputs, ``because`` of a neighbor
     bugs: tuple[Bug, ...]
     # registers with an asynchronous reset; the clock then gives the inputs their next values
     at_once: tuple[str, ...]
@@ -65,7 +65,7 @@ class Coupling:
     arrays: tuple[str, ...]
     memory: str  # a file of memory/, for rtl/passo_memory.v
     cut: tuple[str, ...]  # modules in it that are proved on their own: their ports are outputs and inputs
-    apart: bool  # each goal is proved on its own, which z3 may decide faster than all at once
+    apart: bool  # each goal is proved on its own, which z3 may decide faster than all together
     slow: bool  # takes too long for ``make test``
     opaque: bool  # products and quotients of unknown numbers are unknown functions
     # goals that z3 decides faster value by value of an expression: the expression, and how many values

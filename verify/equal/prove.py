@@ -125,7 +125,7 @@ def _example(assumed: list[Any], goals: list[Goal]) -> z3.ModelRef | None:
 
 
 def _search(assumed: list[Any], goals: list[Goal], apart: bool) -> tuple[tuple[str, ...], str]:
-    """The goals that fail, and values with which the first ones do; all at once, or one after the other."""
+    """The goals that fail, and values with which the first ones do; all together, or one after the other."""
     solver = z3.Solver()
     solver.set("timeout", TIME_LIMIT * 1000)
     solver.add(*assumed)

@@ -60,7 +60,7 @@ always @(posedge clk) begin
   if (half_valid && !half_low) small_link_upper : assume ((half & 16'hCFEF) == 16'd0);
   if (half_valid && half_low) small_link_lower : assume ((half & 16'hCFFC) == 16'd0 && half[13:12] != 2'd3);
   small_link_reset : assume (f_watch == 6'd0 && rst == !f_started);
-  // the first frame begins at once, and half-words come as soon as they may
+  // the first frame begins immediately, and half-words come as soon as they may
   if (f_started && !f_framed) small_link_start : assume (frame_start);
   small_link_halves :
   assume (half_valid == (f_framed && f_selected && !frame_end && !in_ack && f_gap >= (f_upper ? F_GAP_LOW : F_GAP)));

@@ -3,7 +3,7 @@
 
     .venv/bin/python -m verify.mutants.run [--seed N] [--only NAME,...] [--each N] [--count N]
 
-`--only` takes `rtl`, `c`, modules of rtl/ and files of the driver, the planner and G-code. A run goes on
+`--only` takes `rtl`, `c`, modules of rtl/ and files of the driver, the planner and G-code. A run continues
 where the last one ended: the fates are kept in build/mutants, and all that was killed is killed once more
 when the sources or the judges are others. A run of everything writes docs/reference/mutants.md.
 """

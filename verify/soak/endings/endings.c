@@ -382,7 +382,7 @@ static void judge_state(
 	const bool comes = wanted != PASSO_OK && !may_have_ended;
 	const enum passo_error error = comes ? await(bench, scene) : finish(bench, scene);
 
-	/* the switch that was looked for may have come first */
+	/* the switch that it seeks may have come first */
 	const bool is_sought = error == PASSO_ERROR_TRIGGER && is_task(scene->operation);
 	if (error != wanted && !is_sought && !(may_have_ended && error == PASSO_OK))
 		bench_blame(bench, passo_error_name(error), (long)error, (long)wanted);
