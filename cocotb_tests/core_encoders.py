@@ -312,7 +312,7 @@ def stops_of_a_motion_that_follows(core: Core) -> None:
         core.run(1500)
         check_stopped(core, channel, cause)
         channel.clear()
-    # the axis of an encoder that is not there, and back to the ramps
+    # the axis of an encoder that does not exist, and back to the ramps
     channel.rest()
     channel.link.write(follow, follow_word(7))
     thread(channel, ONE // 3, 4, core.tick)

@@ -135,7 +135,7 @@ static void check_line(const struct passo_plan *plan, uint8_t axes, bool endless
 	uint32_t longest = 0;
 	for (unsigned axis = 0; axis < PASSO_AXES_MAX; axis++) {
 		expect(line->steps[axis] <= line->substeps, "an axis has more steps than substeps");
-		expect(axis < axes || line->steps[axis] == 0, "an axis that is not there moves");
+		expect(axis < axes || line->steps[axis] == 0, "an axis that does not exist moves");
 		longest = longest > line->steps[axis] ? longest : line->steps[axis];
 	}
 	expect(longest > 0 && line->substeps > 0, "the line is empty");

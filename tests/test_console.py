@@ -824,8 +824,8 @@ def test_table_is_checked(bench: Bench) -> None:
     assert bench.ask("table") == "error: table is missing"
     user = "move steps=10 profile=user total_time=0.01 ramp_time=0.002"
     assert bench.ask(user) == "error: table is missing"
-    assert bench.ask("table 3") == "error: row and points need each other"
-    assert bench.ask(f"table points={ZEROS}") == "error: row and points need each other"
+    assert bench.ask("table 3") == "error: row and points must be given together"
+    assert bench.ask(f"table points={ZEROS}") == "error: row and points must be given together"
     for row in range(16):
         points = ",".join(str((row * 16 + k) * 256) for k in range(16))
         assert bench.ask(f"table {row} {points}") == "ok"

@@ -338,7 +338,7 @@ def test_the_session_in_the_documentation_is_real() -> None:
 
 
 def test_what_the_console_of_the_pc_refuses() -> None:
-    """Switches that cannot be, with what is wrong; pins that are not there."""
+    """Switches that cannot be, with what is wrong; pins that do not exist."""
     for options, problem in (
         (["--switch", "home:0:..5"], "--switch needs --inputs"),
         (["--inputs", "--switch", "home:4:..5"], "the core has no such axis"),

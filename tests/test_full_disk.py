@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A disk that is full, a cache that is not whole: each is told in a sentence, and harms no later command."""
+"""A disk that is full, an incomplete cache: each is reported in a sentence, and harms no later command."""
 
 import ctypes
 import errno
@@ -170,7 +170,7 @@ def test_the_command_mends_its_cache(tmp_path: Path) -> None:
     env = {**os.environ, "PASSO_BUILD": str(tmp_path)}
     done = subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
-    said = "Building planner again, as the one in the cache is not whole ..."
+    said = "Building planner again, as the one in the cache is incomplete ..."
     assert [line for line in done.stdout.splitlines() if line.startswith("Building")] == [said]
 
 
@@ -222,7 +222,7 @@ def files(out: Path) -> list[Path]:
 def test_a_full_disk_is_a_sentence(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """At any length of a file: what is there is complete, nothing else is left, and the next run is good."""
+    """At any length of a file: files are complete, nothing else is left, and the next run is good."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "stdin", io.StringIO())
     out, refused = tmp_path / "out", 0

@@ -466,7 +466,7 @@ static inline struct passo_channel_input_flags passo_unpack_channel_input_flags(
 	};
 }
 
-/* Clear input flags. Each bit written as 1 clears a flag of INPUT_FLAGS; bits of axes that are not there do nothing. */
+/* Clear input flags. Each bit written as 1 clears a flag of INPUT_FLAGS; bits of axes that the core lacks do nothing. */
 struct passo_channel_input_clear {
 	uint8_t alarm;      /* alarm. */
 	uint8_t home;       /* home. */

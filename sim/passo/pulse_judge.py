@@ -165,6 +165,6 @@ def curve_faults(run: Run, axis: int, steps: Steps, places: list[_Place]) -> Ite
         for word, bad in (("early", lead < -EARLY - tolerance), ("late", ~in_time & ~waited[own])):
             if (k := _first(bad)) is not None:
                 where = f"axis {axis}, step {first + k}, clock {clocks[first + k]}"
-                yield Fault("curve", f"{where}: {word}, {abs(lead[k]):.3f} substeps from its place")
+                yield Fault("curve", f"{where}: {word}, {abs(lead[k]):.3f} substeps from its position")
         first += count
         begin += plan.clocks

@@ -59,7 +59,7 @@ class Cause(DescribedEnum):
     TRIGGER = 8, "The trigger fired, and its action is a stop."
     WATCHDOG = 9, "No good frame came for too long while a motion ran."
     ESTOP = 10, "The e-stop input became active."
-    FOLLOWING_ERROR = 11, "An axis was too far from its encoder."
+    FOLLOWING_ERROR = 11, "The following error of an axis exceeded its limit."
 
 
 class TriggerSource(DescribedEnum):
@@ -742,8 +742,8 @@ CHANNEL_INPUT_FLAGS_ALARM_LSB = 24
 CHANNEL_INPUT_FLAGS_ALARM_BITS = 8
 CHANNEL_INPUT_FLAGS_ALARM_RESET = 0x00
 
-# Channel: Clear input flags. Each bit written as 1 clears a flag of INPUT_FLAGS; bits of axes that are not
-# there do nothing.
+# Channel: Clear input flags. Each bit written as 1 clears a flag of INPUT_FLAGS; bits of axes that the
+# core lacks do nothing.
 CHANNEL_INPUT_CLEAR = 0x12
 CHANNEL_INPUT_CLEAR_LIMIT_LOW_LSB = 0
 CHANNEL_INPUT_CLEAR_LIMIT_LOW_BITS = 8
@@ -1086,7 +1086,7 @@ ENCODER_RATIO_BITS = 32
 ENCODER_RATIO_RESET = 0x00010000
 ENCODER_RATIO_DEFINED = 0xFFFFFFFF
 
-# Encoder: Following error limit. Error from which on the axis is too far from its encoder.
+# Encoder: Following error limit. Following error at which the axis is exceeded.
 ENCODER_LIMIT = 0x2
 ENCODER_LIMIT_LSB = 0
 ENCODER_LIMIT_BITS = 16

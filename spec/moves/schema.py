@@ -200,14 +200,14 @@ def _form(
     for entry in (*table["keys"], *every):
         given = {"name": entry} if isinstance(entry, str) else entry
         key = _key(place, {**common.get(given["name"], {}), **given}, kinds, constants, keys)
-        _want(key.name not in keys, f"{place}: {key.name} is there twice")
+        _want(key.name not in keys, f"{place}: {key.name} is defined twice")
         keys[key.name] = key
     rules = []
     for rule in table.get("rules", ()):
         (kind,) = set(rule) - {"key"}
         other = rule[kind] if isinstance(rule[kind], str) else rule["key"]
         _want(kind in ("excludes", "needs", "above_zero"), f"{place}: unknown rule {kind}")
-        _want({rule["key"], other} <= set(keys), f"{place}: a rule for a key that is not there")
+        _want({rule["key"], other} <= set(keys), f"{place}: a rule for a key that does not exist")
         rules.append(Rule(kind, rule["key"], other))
     form = _record(Form, place, {**table, "keys": list(keys.values()), "rules": rules})
     _want(form.told_by in (None, *keys), f"{place}: no key {form.told_by}")
