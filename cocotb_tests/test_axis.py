@@ -137,7 +137,7 @@ class Axis:
         return cls(dut, await prepare(dut, timing), timing)
 
     async def set_timing(self, timing: PinTiming) -> None:
-        """Change the settings while the axis stands."""
+        """Change the settings while the axis is idle."""
         self.timing = timing
         await write(self.dut, self.clocks, timing)
         self.checker.set_timing(0, timing)

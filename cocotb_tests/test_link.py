@@ -84,7 +84,7 @@ class Target:
     """All registers behind the bus: writable where `refusals` has no entry and `known` has the address.
 
     Answers as the RTL's targets do: one clock after the strobe, for one clock, 0 otherwise. Checks that
-    address and data stand on the bus a clock before their strobe, and data to check or write a clock after
+    address and data are stable a clock before their strobe, and data to check or write a clock after
     it; and what the link says of the size of data to check.
     """
 

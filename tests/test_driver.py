@@ -183,7 +183,7 @@ TURNS = [3, 2, 1, 0]  # of the axes: of the signs, without zeros, from + on
 
 @pytest.mark.parametrize("how", ["moves", "stream"])
 def test_an_axis_that_stands_does_not_turn(driver: Driver, wire: Wire, how: str) -> None:
-    """DIR changes only where the next step goes the other way, whatever the line says of one that stands."""
+    """DIR changes only where the next step goes the other way, whatever the line says of a stationary one."""
     if how == "moves":
         for way in WAYS:
             driver.call("move_by_speed", by_speed(way))

@@ -264,7 +264,7 @@ def test_a_thread_has_its_pitch_and_phase(steps: int, counts: int) -> None:
 
 
 def test_moves_after_a_thread_have_the_cores_clock() -> None:
-    """Though the spindle stands; and a thread stands with it."""
+    """Though the spindle is stationary, and a thread with it."""
     driver, shafts = machine()
     driver.call("thread", thread(steps=[100], counts=400))
     shafts.run(CLOCK_HZ // 1000)

@@ -164,7 +164,7 @@ def test_a_motion_that_has_not_begun(first: Driver, what: str) -> None:
 @pytest.mark.parametrize("held", [False, True])
 @pytest.mark.parametrize("way", ["end", "stop", "abort"])
 def test_a_motion_that_runs(first: Driver, way: str, held: bool) -> None:
-    """It goes on as it was told, what is queued behind it waits; then the channel is taken over."""
+    """It continues as commanded, what is queued behind it waits; then the channel is taken over."""
     wire = first.engine
     first.call("arm_trigger", struct("trigger_config", source=TriggerSource.PROBE, action=1))
     first.call("move_by_speed", by_speed([2000, 0, 0]))
@@ -245,7 +245,7 @@ def test_override_and_hold_at_rest(first: Driver) -> None:
 
 
 def test_another_host(first: Driver) -> None:
-    """It is taken over; the other one is told with its next frame."""
+    """It is taken over; the other one is notified with its next frame."""
     jog(first, steps=100)
     first.wait(1)
     second = again(first)

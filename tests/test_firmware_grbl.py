@@ -275,7 +275,7 @@ def test_link_is_lost_in_mid_path(board: GrblBoard) -> None:
 
 
 def test_estop_at_the_start(fast_elf: Path) -> None:
-    """It is told, and the greeting follows when it is over. A machine with homes is locked."""
+    """It is reported, and the greeting follows when it is over. A machine with homes is locked."""
     with model_engine(replace(parameters_for(3), inputs=1), HZ) as engine:
         engine.set("estop_n", 0)
         machine = Machine(fast_elf, engine, baud=FAST_BAUD)

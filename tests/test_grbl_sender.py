@@ -164,7 +164,7 @@ def test_a_reset_in_motion(connected: tuple[Sender, Grbl]) -> None:
 
 
 def test_a_bad_line(connected: tuple[Sender, Grbl]) -> None:
-    """The sender is told which, and halts."""
+    """The sender gets its number, and halts."""
     sender, _ = connected
     sender.start(["G0 X1", "G1 X2 F600", "G1 Y1 Y2", "G0 X30"], incremental=True)
     text, command, number = sender.wait("on_error")

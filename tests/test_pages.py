@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What README.md and docs/ print is typed here as it stands there."""
+"""What README.md and docs/ print is typed here as printed there."""
 
 import re
 import shlex

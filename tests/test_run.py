@@ -214,7 +214,7 @@ def test_a_host_that_is_too_slow(tmp_path: Path, capsys: pytest.CaptureFixture[s
 
 
 class Tampered:
-    """An engine that is told another pin timing of axis 1 than the host wanted."""
+    """An engine configured with another pin timing of axis 1 than the host wanted."""
 
     def __init__(self, engine: object):
         self.engine = engine

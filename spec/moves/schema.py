@@ -154,7 +154,7 @@ def read(root: Path) -> Schema:
     for form in forms:
         by_key = form.has("profile") or form.has("shape") or form.has("per_axis")
         _want(by_key or form.profile in data["profiles"], f"form {form.name}: which profile has it?")
-    _want(sum(form.told_by is not None for form in forms) == 2, "two forms are told by their keys")
+    _want(sum(form.told_by is not None for form in forms) == 2, "two forms are recognized by their keys")
     user = data["user"]
     return Schema(constants, data["profiles"], user["name"], user["bank"], user["shaped"], kinds, forms, made)
 

@@ -66,7 +66,7 @@ def _chosen(only: Sequence[str], kind: str, ending: str) -> list[str] | None:
 def main() -> None:
     """Run, print the table, and exit with 1 if the judges find fault with the sources themselves."""
     parser = argparse.ArgumentParser(prog="python -m verify.mutants.run", description=__doc__.split("\n")[0])
-    parser.add_argument("--seed", type=int, default=1, help="of the mutants and of the histories")
+    parser.add_argument("--seed", type=int, default=1, help="seed of mutants and scenarios")
     parser.add_argument("--only", default="", help="rtl, c, modules, files")
     parser.add_argument("--each", type=int, default=EACH, help="mutants of a module (default: %(default)s)")
     parser.add_argument("--count", type=int, default=COUNT, help="mutants in C (default: %(default)s)")

@@ -94,7 +94,8 @@ static void check_counts(struct player *player, struct scenario_random *random, 
 	        | (indexes != 0u ? (uint32_t)position & 0xFFFFu : 0u));
 }
 
-/* A move of one axis, whose encoder stands: it stops as the setup says when the error is at its limit. */
+/* A move of one axis, whose encoder is stationary: it stops as the setup says when the error is at its limit.
+ */
 static void check_following(
     struct player *player, struct scenario_random *random, unsigned axis, uint32_t setup)
 {

@@ -32,7 +32,7 @@ struct bench {
 	unsigned frames;  /* so far */
 	unsigned dies_in; /* frames until the host fails in one of them; 0: never */
 	jmp_buf death;
-	uint64_t spindle_period, spindle_next; /* clocks from count to count, 0: it stands */
+	uint64_t spindle_period, spindle_next; /* clocks from count to count, 0: at rest */
 	unsigned spindle;                      /* counts so far */
 	unsigned compares;                     /* pulses of the compare pin */
 	uint64_t powered;                      /* clock of the last rise of a power pin */
