@@ -157,7 +157,7 @@ async def a_line_that_flickers_on_every_clock(dut: HierarchyObject) -> None:
 
 
 @cocotb.test()
-async def both_lines_at_once_are_no_count(dut: HierarchyObject) -> None:
+async def both_lines_together_are_no_count(dut: HierarchyObject) -> None:
     """They are counted apart, up to 255, until cleared."""
     shaft = await Shaft.begin(dut, filter=2)
     for n in range(1, 300):

@@ -140,7 +140,7 @@ async def the_rate_slews_onto_its_target_and_stays(dut: HierarchyObject) -> None
 
 
 @cocotb.test()
-async def a_slew_of_zero_counts_as_one_and_of_one_is_at_once(dut: HierarchyObject) -> None:
+async def a_slew_of_zero_counts_as_one_and_of_one_is_immediate(dut: HierarchyObject) -> None:
     """rate_slew 0 moves by 1 per slew tick; 65536 is there with the first step."""
     bench = await Bench.begin(dut, rate_target=1000, rate_slew=0)
     bench.set(moving=1, rate_target=1005)

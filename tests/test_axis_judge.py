@@ -108,7 +108,7 @@ def test_jerk() -> None:
     ]
 
 
-def test_a_jump_is_seen_at_once() -> None:
+def test_a_jump_is_seen_immediately() -> None:
     """A speed of 10 mm/s from rest; an axis with that start-stop speed may."""
     times = np.array([0, 0.05, 0.05, 0.3, 0.3, 0.4])
     jump = integral(times + np.array([0, -1e-9, 0, 0, 1e-9, 0]), np.array([0, 0, 10, 10, 0, 0])), 0.4

@@ -111,7 +111,7 @@ def test_a_reset_in_mid_path(session: Session, held: bool) -> None:
     assert session.report()["MPos"] == "-5.000,1.000,0.000"
 
 
-def test_jogs_end_at_once_without_an_alarm(session: Session) -> None:
+def test_jogs_end_immediately_without_an_alarm(session: Session) -> None:
     session.line("G91 G20")
     assert session.line("$J=G21 G91 X50 F6000") == "ok"
     session.grbl.wait(lambda: False, 0.2)

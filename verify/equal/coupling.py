@@ -58,7 +58,7 @@ class Coupling:
     assumptions: dict[str, dict[str, str]]  # ``that`` holds of the inputs, ``because`` of a neighbor
     bugs: tuple[Bug, ...]
     # registers with an asynchronous reset; the clock then gives the inputs their next values
-    at_once: tuple[str, ...]
+    asynchronous: tuple[str, ...]
     # leaves of the objects that a parameter fixes: member after member
     fixed: dict[str, int]
     # long arrays of integers: unknown as a whole, which z3 decides faster; without indices: ``a[].b``
@@ -70,7 +70,7 @@ class Coupling:
     opaque: bool  # products and quotients of unknown numbers are unknown functions
     # goals that z3 decides faster value by value of an expression: the expression, and how many values
     splits: dict[str, dict[str, Any]]
-    clocks: tuple[str, ...]  # inputs that clock registers, too, which are all of at_once
+    clocks: tuple[str, ...]  # inputs that clock registers, too, which are all of asynchronous
 
 
 def _link(entry: str | dict[str, Any]) -> Link:
@@ -108,7 +108,7 @@ def read_coupling(path: Path) -> Coupling:
             {name: _link(entry) for name, entry in table.pop("invariants", {}).items()},
             table.pop("assumptions", {}),
             tuple(Bug(**bug) for bug in table.pop("bug", ())),
-            tuple(table.pop("at_once", ())),
+            tuple(table.pop("asynchronous", ())),
             table.pop("fixed", {}),
             tuple(table.pop("arrays", ())),
             table.pop("memory", "passo_memory.v"),
