@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a program of G-code does, in mm and machine coordinates, whoever has read it."""
+"""The motions of a G-code program, in mm and machine coordinates, from any interpreter."""
 
 import math
 from collections.abc import Iterator, Sequence

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A core with all its parts: what inputs, encoders and outputs do to each other."""
+"""A core with all its parts: how inputs, encoders and outputs interact."""
 
 from collections.abc import Iterator
 from contextlib import suppress

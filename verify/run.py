@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Show that the promises are kept: by proofs, equality with the model, histories, cut wires and mutants.
+"""Verify the promises by proofs, equality with the model, histories, inverted wires and mutants.
 
     .venv/bin/python -m verify.run [--seed N] [--scale X] [NAME ...]
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * What the inputs of all channels share: the tick of the filter, e-stop, watchdog. See rtl/passo_machine.v,
+ * Shared by the inputs of all channels: the tick of the filter, e-stop, watchdog. See rtl/passo_machine.v,
  * rtl/passo_estop.v and rtl/passo_watchdog.v.
  */
 #include "passo_model.h"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Make mutants of the RTL and of the C sources, and let the judges play that do not know the model.
+"""Make mutants of RTL and C sources, and try them on the judges that do not know the model.
 
     .venv/bin/python -m verify.mutants.run [--seed N] [--only NAME,...] [--each N] [--count N]
 
