@@ -48,21 +48,21 @@ class Coupling:
     same: dict[str, tuple[str, ...]]  # by section
     free: dict[str, str]  # registers or inputs without coupling, and why
     invariants: dict[str, Link]  # hold before the clock, and are proved to hold after it
-    assumptions: dict[str, dict[str, str]]  # ``that`` holds of the inputs, ``because`` of a neighbour
+    assumptions: dict[str, dict[str, str]]  # ``that`` holds of the inputs, ``because`` of a neighbor
     # registers with an asynchronous reset; the clock then gives the inputs their next values
-    at_once: tuple[str, ...]
+    asynchronous: tuple[str, ...]
     # leaves of the objects that a parameter fixes: member after member
     fixed: dict[str, int]
     # long arrays of integers: unknown as a whole, which z3 decides faster; without indices: ``a[].b``
     arrays: tuple[str, ...]
     memory: str  # a file of memory/, for rtl/passo_memory.v
     cut: tuple[str, ...]  # modules in it that are proved on their own: their ports are outputs and inputs
-    apart: bool  # each goal is proved on its own, which z3 may decide faster than all at once
+    apart: bool  # each goal is proved on its own, which z3 may decide faster than all together
     slow: bool  # takes too long for ``make test``
     opaque: bool  # products and quotients of unknown numbers are unknown functions
     # goals that z3 decides faster value by value of an expression: the expression, and how many values
     splits: dict[str, dict[str, Any]]
-    clocks: tuple[str, ...]  # inputs that clock registers, too, which are all of at_once
+    clocks: tuple[str, ...]  # inputs that clock registers, too, which are all of asynchronous
 
 
 SECTIONS = ("inputs", "outputs", "registers")
@@ -110,7 +110,7 @@ def read_coupling(path: Path) -> Coupling:
             table.pop("free", {}),
             {name: _link(entry) for name, entry in table.pop("invariants", {}).items()},
             table.pop("assumptions", {}),
-            tuple(table.pop("at_once", ())),
+            tuple(table.pop("asynchronous", ())),
             table.pop("fixed", {}),
             tuple(table.pop("arrays", ())),
             table.pop("memory", "passo_memory.v"),

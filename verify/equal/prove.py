@@ -131,7 +131,7 @@ def _example(assumed: list[Any], goals: list[Goal]) -> z3.ModelRef | None:
 
 
 def _search(assumed: list[Any], goals: list[Goal], apart: bool) -> tuple[tuple[str, ...], str]:
-    """The goals that fail, and values with which the first ones do; all at once, or one after the other."""
+    """The goals that fail, and values with which the first ones do; all together, or one after the other."""
     solver = z3.Solver()
     solver.set("timeout", TIME_LIMIT * 1000)
     solver.add(*assumed)
@@ -162,7 +162,7 @@ def _clock_goals(coupling: Coupling, rtl: Rtl, root: Path) -> tuple[list[Any], l
     assumed += [truth(before[entry["that"]]) for entry in coupling.assumptions.values()]
     if "rst" in rtl.inputs and "rst" not in coupling.inputs:
         assumed.append(z3.Not(rtl.before["rst"]))
-    if coupling.at_once:
+    if coupling.asynchronous:
         assumed += _coupled(coupling.inputs, rtl.after, after).values()
     outputs = _coupled(coupling.outputs, rtl.before, before)
     registers = _coupled(coupling.registers, rtl.after, after)
@@ -199,7 +199,7 @@ def _reset_goals(coupling: Coupling, rtl: Rtl, root: Path) -> tuple[list[Any], l
     assumed += _coupled(kept, rtl.before, before).values()
     assumed += [truth(before[link.expression]) for link in coupling.invariants.values() if link.kept]
     assumed += [truth(before[entry["that"]]) for entry in coupling.assumptions.values()]
-    if coupling.at_once:
+    if coupling.asynchronous:
         assumed += _coupled(coupling.inputs, rtl.after, after).values()
     registers = _coupled(coupling.registers, rtl.after, after)
     goals = [Goal(f"after a reset: register {name}", formula) for name, formula in registers.items()]
