@@ -6,10 +6,10 @@ number of a fault is a constant that the solver chooses; number 0 is the module 
 """
 
 SELECT = "passo_fault"
-WIDTH = 10  # of SELECT
-CELLS = 400  # faults among the cells without a clock
-PORTS = (  # (cells with a clock, the port that a fault is at, how many faults)
-    ("t:*dff*", "D", 80),
+WIDTH = 11  # of SELECT
+CELLS = 1400  # faults among the combinational cells
+PORTS = (  # (registers and memories, the port that a fault is at, how many faults)
+    ("t:*dff*", "D", 300),
     ("t:*dff*", "ARST", 20),
     ("t:$mem*", "RD_ADDR", 20),
     ("t:$mem*", "WR_ADDR", 20),
@@ -17,8 +17,6 @@ PORTS = (  # (cells with a clock, the port that a fault is at, how many faults)
     ("t:$mem*", "WR_EN", 20),
 )
 LISTS = SELECT + "_{}.ys"  # what draw() writes
-
-
 # Cells of the RTL: not of properties (*.vh), of wrappers around modules, nor of abstract memories.
 OF_RTL = "a:src=*.v:* a:src=*_proof.v:* %d a:src=*memory/*.v:* %d"
 
