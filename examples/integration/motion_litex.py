@@ -51,6 +51,7 @@ class Passo(LiteXModule):
             "passo_wishbone",
             p_AXES=AXES,
             p_INPUTS=1,
+            p_CLOCK_HZ=int(CLOCK_HZ),
             p_ENABLE_RESET=Constant(0b111, AXES),  # drives with an active-low enable: off at first
             i_clk=ClockSignal(),
             i_rst=ResetSignal(),

@@ -118,7 +118,8 @@ def core_for(machine: MachineFile) -> Parameters:
     """The core that a machine needs."""
     core = parameters_for(len(machine.settings.axes))
     outputs = machine.gcode.spindle_maximum > 0
-    return replace(core, inputs=int(machine.has_inputs), outputs=int(outputs))
+    parts = {"inputs": int(machine.has_inputs), "outputs": int(outputs)}
+    return replace(core, clock_hz=machine.clock_hz, **parts)
 
 
 def attach(engine: Any, machine: MachineFile) -> None:

@@ -4,7 +4,7 @@
 #define POLLS 2000u   /* of the feed in a second, at least */
 #define RESERVES 200u /* in a second: the core has so much, however the lines come */
 
-#define PIN_CLOCKS ((CORE_HZ + 999999u) / 1000000u) /* 1 us */
+#define MICROSECONDS 1000000u
 #define MILLION ((int64_t)PASSO_GCODE_MILLION)
 #define AXES_USED (AXES > 0 ? AXES : PASSO_GCODE_AXES_MAX)
 #define LINEAR_AXES 2u /* X and Y; Z and what follows are slow */
@@ -46,11 +46,14 @@ static void grbl_defaults(struct passo_grbl_settings *settings)
 void grbl_machine(
     struct passo_grbl_setup *setup, const struct passo *passo, const struct passo_storage_pages *pages)
 {
+	const uint32_t clock_hz = passo_machine(passo)->clock_hz;
+	const uint32_t pins = (clock_hz + MICROSECONDS - 1u) / MICROSECONDS; /* 1 us */
+
 	*setup = (struct passo_grbl_setup){.path = {.machine = *passo_machine(passo),
 					       .profile = PASSO_PROFILE_LINEAR,
-					       .reserve_clocks = CORE_HZ / RESERVES,
+					       .reserve_clocks = clock_hz / RESERVES,
 					       .polls = POLLS},
-	    .pins = {.step_low_ns = PIN_CLOCKS, .dir_setup_ns = PIN_CLOCKS, .dir_hold_ns = PIN_CLOCKS},
+	    .pins = {.step_low_ns = pins, .dir_setup_ns = pins, .dir_hold_ns = pins},
 	    .limits_low = LIMITS_LOW,
 	    .limits_high = LIMITS_HIGH,
 	    .homes = HOMES,
