@@ -301,6 +301,8 @@ def test_boards_are_listed_and_unknown_ones_refused(capsys: pytest.CaptureFixtur
     assert all(board.name in listed and board.title in listed for board in BOARDS)
     assert synth.main(["--board", "nowhere"]) == 2
     assert "unknown board 'nowhere'; must be one of" in capsys.readouterr().err
+    assert synth.main(["--board", "icebraker"]) == 2
+    assert "unknown board 'icebraker'; did you mean icebreaker?" in capsys.readouterr().err
     assert synth.main(["--board", BOARDS[0].name, "--clock", "5000"]) == 2
     assert "cannot generate 5000 MHz" in capsys.readouterr().err
     for axes in (0, 7):
