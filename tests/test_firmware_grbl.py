@@ -12,12 +12,14 @@ import passo
 import pytest
 from passo import registers as r
 from passo.cli import main
+from passo.drives import drives
 from passo.engine import model_engine, rtl_engine
 from passo.grbl import Grbl
 from passo.grbl_setup import machine_at
 from passo.machine_file import read_machine
 from passo.run import parameters_for
 from passo.toolchain import paths
+from passo.values import parse_time
 from passo_stm32.board import Motion, make_firmware, motions
 from passo_stm32.bus import TICKS_PER_SECOND
 from passo_stm32.flash import FIRST, PAGE
@@ -115,6 +117,52 @@ def test_core_that_does_not_tell_its_clock(elf: Path) -> None:
         board.type("G1 X2 F6000\n$H\n")
         board.run(0.5)
         assert board.output.endswith("[MSG:CLOCK_UNKNOWN]\r\n") and not board.events()["step"].any()
+
+
+def shortest_times(events: np.ndarray, axis: int, clock_hz: int) -> dict[str, float]:
+    """Shortest times at the pins of an axis, in us: STEP high and low, DIR before STEP rises and after."""
+    clock = events["clock"].astype(float) / clock_hz * 1e6
+    step, dir_ = (events[pin] >> axis & 1 for pin in ("step", "dir"))
+
+    def edges(levels: np.ndarray, level: int) -> np.ndarray:
+        changed = np.flatnonzero(np.diff(levels.astype(int)) == 2 * level - 1) + 1
+        return clock[changed]
+
+    rises, falls = edges(step, 1), edges(step, 0)
+    turns = np.sort(np.concatenate([edges(dir_, 0), edges(dir_, 1)]))
+    after = [(turn - rises[rises < turn][-1]) for turn in turns if (rises < turn).any()]
+    before = [(rises[rises >= turn][0] - turn) for turn in turns if (rises >= turn).any()]
+    assert len(rises) == len(falls) > 100 and len(before) > 5
+    return {
+        "high": (falls - rises).min(),
+        "low": (rises[1:] - falls[:-1]).min(),
+        "setup": min(before),
+        "hold": min(after),
+    }
+
+
+@pytest.mark.parametrize("name", ["DM542", "TB6600", "A4988", "servo-24V"])
+def test_pins_are_as_the_drive_needs(elf: Path, name: str) -> None:
+    """By the settings that `$` lines would have, at every reversal of a zigzag."""
+    clock_hz = 81_000_000
+    microseconds = {key: float(parse_time(key, time, 1)) * 1e6 for key, time in drives()[name].pins.items()}
+    pulse = max(microseconds["step_high"], microseconds["step_low"])
+    turn = max(microseconds["dir_setup"], microseconds["dir_hold"])
+    with model_engine(replace(PARAMETERS, clock_hz=clock_hz), clock_hz) as engine:
+        board = GrblBoard(engine, elf)
+        for line in (f"$0={pulse:g}", f"$29={turn:g}", f"$4={drives()[name].enable_inverted:d}"):
+            assert board.line(line) == "ok"
+        board.events()
+        board.stream([f"G1 X{i % 2 * 0.2:g} Y{i * 0.1:g} F6000" for i in range(20)], 5)
+        board.rest(5)
+        events = board.events()
+        shortest = shortest_times(events, 0, clock_hz)
+        clock = 1e6 / clock_hz
+        assert pulse - 1e-6 <= shortest["high"] < pulse + clock
+        assert shortest["low"] >= pulse - 1e-6 and shortest["setup"] >= turn - 1e-6
+        assert shortest["hold"] >= turn - 1e-6 and not board.faults
+        enabled = int(events["enable"][-1]) & 1
+        assert enabled != drives()[name].enable_inverted
 
 
 def test_settings_outlast_a_reset(board: GrblBoard) -> None:

@@ -4,7 +4,6 @@
 #define POLLS 2000u   /* of the feed in a second, at least */
 #define RESERVES 200u /* in a second: the core has so much, however the lines come */
 
-#define MICROSECONDS 1000000u
 #define MILLION ((int64_t)PASSO_GCODE_MILLION)
 #define AXES_USED (AXES > 0 ? AXES : PASSO_GCODE_AXES_MAX)
 #define LINEAR_AXES 2u /* X and Y; Z and what follows are slow */
@@ -19,6 +18,7 @@ static const uint16_t VALUES[PASSO_GRBL_SETTINGS] = {
     [PASSO_GRBL_HOME_SEEK] = 1200,
     [PASSO_GRBL_DEBOUNCE] = 1,
     [PASSO_GRBL_PULL_OFF] = 1,
+    [PASSO_GRBL_TURN] = 1,
     [PASSO_GRBL_SPINDLE] = 1000,
 };
 
@@ -46,14 +46,10 @@ static void grbl_defaults(struct passo_grbl_settings *settings)
 void grbl_machine(
     struct passo_grbl_setup *setup, const struct passo *passo, const struct passo_storage_pages *pages)
 {
-	const uint32_t clock_hz = passo_machine(passo)->clock_hz;
-	const uint32_t pins = (clock_hz + MICROSECONDS - 1u) / MICROSECONDS; /* 1 us */
-
 	*setup = (struct passo_grbl_setup){.path = {.machine = *passo_machine(passo),
 					       .profile = PASSO_PROFILE_LINEAR,
-					       .reserve_clocks = clock_hz / RESERVES,
+					       .reserve_clocks = passo_machine(passo)->clock_hz / RESERVES,
 					       .polls = POLLS},
-	    .pins = {.step_low_ns = pins, .dir_setup_ns = pins, .dir_hold_ns = pins},
 	    .limits_low = LIMITS_LOW,
 	    .limits_high = LIMITS_HIGH,
 	    .homes = HOMES,
