@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Drives by name (spec/drives.toml) in machine files."""
+"""Drives by name (sim/passo/drives.toml) in machine files."""
 
 import math
 from dataclasses import replace

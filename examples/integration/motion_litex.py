@@ -17,7 +17,7 @@ from migen import ClockSignal, Constant, Instance, ResetSignal, Signal
 from migen.genlib.io import CRG
 
 AXES = 3
-CLOCK_HZ = 50e6
+CLOCK_HZ = 100e6
 BASE = 0x3000_0000
 INPUTS = {"limit_low": AXES, "limit_high": AXES, "estop_n": 1}
 OUTPUTS = {"step": AXES, "dir": AXES, "enable": AXES}

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""Drives by name: the pin timings and polarities of spec/drives.toml."""
+"""Drives by name: the pin timings and polarities of drives.toml."""
 
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
+from pathlib import Path
 
-from passo.toolchain import paths
-
-TABLE = "drives.toml"
+TABLE = Path(__file__).with_name("drives.toml")
 
 
 @dataclass(frozen=True)
@@ -32,5 +31,5 @@ class Drive:
 @cache
 def drives() -> Mapping[str, Drive]:
     """All drives by name."""
-    table = tomllib.loads((paths.spec / TABLE).read_text(encoding="utf-8"))
+    table = tomllib.loads(TABLE.read_text(encoding="utf-8"))
     return {drive["name"]: Drive(**drive) for drive in table["drive"]}
