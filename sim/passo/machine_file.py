@@ -27,10 +27,11 @@ from passo.table_values import (
     read_word,
     within,
 )
+from passo.toolchain import need_repository
 from passo.values import BadValueError, Written, shown
 
 FILE_KEYS = (
-    *("clock_hz", "junction_deviation", "arc_tolerance", "profile", "spindle_maximum", "laser"),
+    *("board", "clock_hz", "junction_deviation", "arc_tolerance", "profile", "spindle_maximum", "laser"),
     *("soft_limits", "probe", "drive", "pins", "switches", "home", "axis"),
 )
 AXIS_KEYS = ("name", "steps_per_mm", "speed", "acceleration", "jerk", "jump", "travel", "home", "switches")
@@ -87,6 +88,7 @@ class MachineFile:
     switches: Switches
     laser: bool = False
     enable_inverted: bool = False
+    board: str = ""  # a folder of syn/, or none
 
     @property
     def has_inputs(self) -> bool:
@@ -115,7 +117,7 @@ def read_machine(path: Path) -> MachineFile:
 
 def _machine(path: Path, data: Table) -> MachineFile:
     check_known(data, FILE_KEYS)
-    clock_hz = read_clock_hz(data)
+    board, clock_hz = _board(data)
     pins, enable_inverted = _pins(data)
     tables = read_tables(data, "axis")
     if not 1 <= len(tables) <= len(AXIS_LETTERS):
@@ -155,7 +157,22 @@ def _machine(path: Path, data: Table) -> MachineFile:
         switches,
         _flag(data, "laser", False),
         enable_inverted,
+        board,
     )
+
+
+def _board(data: Table) -> tuple[str, int]:
+    """The board, if there is one, and its clock; without a board, the clock that the file says."""
+    if "board" not in data:
+        return "", read_clock_hz(data)
+    from passo_fpga import boards
+
+    need_repository("a board")
+    name = read_word(data, "board", tuple(boards.names()))
+    clock_hz = boards.board(name).parameters()["CLOCK_HZ"]
+    if "clock_hz" in data and read_clock_hz(data) != clock_hz:
+        raise BadValueError(f"clock_hz is {data['clock_hz']}, but the board {name} runs at {clock_hz} Hz")
+    return name, clock_hz
 
 
 def _pins(data: Table) -> tuple[Table, bool]:

@@ -16,7 +16,6 @@ static const uint16_t VALUES[PASSO_GRBL_SETTINGS] = {
     [PASSO_GRBL_HOMES_LOW] = 0,
     [PASSO_GRBL_HOME_FEED] = 120,
     [PASSO_GRBL_HOME_SEEK] = 1200,
-    [PASSO_GRBL_DEBOUNCE] = 1,
     [PASSO_GRBL_PULL_OFF] = 1,
     [PASSO_GRBL_TURN] = 1,
     [PASSO_GRBL_SPINDLE] = 1000,
@@ -34,6 +33,7 @@ static void grbl_defaults(struct passo_grbl_settings *settings)
 	for (unsigned i = 0; i < PASSO_GRBL_SETTINGS; i++)
 		settings->value[i] = VALUES[i] * MILLION;
 	settings->value[PASSO_GRBL_PULSE] = 2 * MILLION;
+	settings->value[PASSO_GRBL_DEBOUNCE] = 2 * MILLION / 5; /* that a core of 160 MHz can count */
 	settings->value[PASSO_GRBL_DEVIATION] = MILLION / 100;
 	settings->value[PASSO_GRBL_ARC_TOLERANCE] = MILLION / 500;
 	for (unsigned i = 0; i < PASSO_GRBL_AXIS_SETTINGS * PASSO_GCODE_AXES_MAX; i++) {
