@@ -48,7 +48,8 @@ def test_results(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for command in commands:
         words = re.findall(r'(?:[^ "]|"[^"]*")+', command)[1:]
         assert make(*(word.replace('"', "") for word in words)).returncode == 0
-    assert "12,000 steps/s of at most 200,000" in capsys.readouterr().out
+    told = capsys.readouterr().out
+    assert "12,000 steps/s of at most 200,000" in told and "EN is high from power-up on" in told
 
 
 def test_an_earlier_result_does_not_stay(tmp_path: Path) -> None:

@@ -141,6 +141,8 @@ def _summary(machine: MachineFile, chosen: Board, parts: list[str]) -> Iterator[
     longest = {"STEP": max(pins.step_high, pins.step_low), "DIR": max(pins.dir_setup, pins.dir_hold)}
     times = (f"{name} {clocks / machine.clock_hz * 1e6:.3g} us" for name, clocks in longest.items())
     yield f"  pins   {', '.join(times)}; EN active {'low' if machine.enable_inverted else 'high'}"
+    if not machine.enable_inverted:
+        yield "         EN is high from power-up on: the drives hold before the firmware starts"
     most = machine.clock_hz / (2 * longest["STEP"])
     for letter, axis, end in zip(AXIS_LETTERS, axes, machine.ends, strict=False):
         steps = float(axis.speed * axis.steps_per_mm)
