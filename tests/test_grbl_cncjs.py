@@ -14,7 +14,8 @@ from tests.helpers.grbl_machine import MACHINE
 from tests.helpers.grbl_terminals import board_at, console_at
 
 pytestmark = pytest.mark.skipif(bool(MISSING), reason=MISSING)
-PATIENCE = 60  # seconds
+PATIENCE = 60
+TRAVEL = 40  # mm: the probe acts at -10
 LINES = 150  # more than the look-ahead and the 120 bytes of cncjs hold
 PART = ["G21 G90", *(f"G1 X-{2 + i % 2 * 0.1:g} Y-{i * 0.1:g} F6000" for i in range(LINES)), "M2"]
 END = [-2.1, -0.1 * (LINES - 1), 0]
@@ -38,7 +39,7 @@ def cncjs_at(link: Path, patience: float = PATIENCE) -> Iterator[Cncjs]:
 @pytest.fixture
 def machine(tmp_path: Path) -> MachineFile:
     path = tmp_path / "machine.toml"
-    path.write_text(MACHINE)
+    path.write_text(MACHINE.replace("travel = 200", f"travel = {TRAVEL}"))
     return read_machine(path)
 
 
@@ -57,8 +58,7 @@ def stream(sender: Cncjs) -> None:
     sender.until_state("Hold")
     sender.until(lambda: sender.status["subState"] == 0)
     held = sender.position
-    sender.until_state("Hold")
-    assert sender.position == held != END
+    assert sender.rest() == held != END and sender.status["activeState"] == "Hold"
     sender.command("gcode:resume")
     sender.until(lambda: sender.last["workflow:state"] == ["idle"])
     assert sender.job["received"] == sender.job["sent"] == sender.job["total"] == len(PART) + 1  # its %wait
@@ -70,7 +70,7 @@ def stream(sender: Cncjs) -> None:
 def test_a_job_with_a_pause(sender: Cncjs) -> None:
     """By counting characters; each line is answered once, and cncjs sees the end by itself."""
     settings = sender.last["controller:settings"][1]
-    assert settings["version"] == "1.1h" and settings["settings"]["$110"] == "12000.000"
+    assert settings["settings"]["$110"] == "12000.000" and len(settings["settings"]) == 34
     assert "$110=12000.000 (X-axis maximum rate, mm/min)" in sender.lines
     assert sender.parser["modal"]["units"] == "G21" and sender.parser["modal"]["wcs"] == "G54"
     stream(sender)
@@ -89,7 +89,7 @@ def test_a_bad_line_stops_a_job(sender: Cncjs) -> None:
     sender.command("gcode:start")
     sender.until_said("error:25")
     sender.until(lambda: sender.last["workflow:state"] == ["paused"])
-    assert "> G1 Y1 Y2 (ln=3)" in sender.lines
+    assert [line for line in sender.lines if line.endswith("(ln=3)")]
 
 
 def test_jogs_and_overrides(sender: Cncjs) -> None:
@@ -98,7 +98,7 @@ def test_jogs_and_overrides(sender: Cncjs) -> None:
     sender.until_state("Jog")
     sender.command("feedOverride", -10)
     sender.command("spindleOverride", 10)
-    sender.until(lambda: sender.status.get("ov") == ["90", "100", "110"])
+    sender.until(lambda: sender.status.get("ov") == [90, 100, 110])
     sender.command("jogCancel")
     sender.until_state("Idle")
     there = sender.position
@@ -109,21 +109,19 @@ def test_jogs_and_overrides(sender: Cncjs) -> None:
 
 def test_a_height_map(sender: Cncjs) -> None:
     """cncjs probes a grid, and keeps the heights of all its points."""
-    grid = {"startX": 0, "endX": -4, "stepX": 4, "startY": 0, "endY": -4, "stepY": 4}
-    sender.command(
-        "autolevel:start", {**grid, "clearanceZ": -45, "startZ": -48, "endZ": -55, "feedrate": 1200}
-    )
+    grid = {"startX": -4, "endX": 0, "stepX": 4, "startY": -4, "endY": 0, "stepY": 4, "feedrate": 1200}
+    sender.command("autolevel:start", {**grid, "clearanceZ": -8, "startZ": -9, "endZ": -15})
     sender.until(lambda: "autolevel:complete" in sender.last)
     update = sender.last["autolevel:update"][0]
     assert update["current"] == update["total"] == 4
-    assert update["minZ"] == pytest.approx(-50, abs=0.1) and update["maxZ"] == pytest.approx(-50, abs=0.1)
+    assert update["minZ"] == pytest.approx(-10, abs=0.1) and update["maxZ"] == pytest.approx(-10, abs=0.1)
 
 
 def test_tool_length(sender: Cncjs) -> None:
     """As its tool change does it: probe, wait, take the length from the position, and read the parameters."""
-    sender.send("G91 G38.2 Z-60 F3000", "G90", "%wait", "G43.1 Z[posz + 1.5]", "$#")
+    sender.send("G91 G38.2 Z-15 F600", "G90", "%wait", "G43.1 Z[posz + 1.5]", "$#")
     told = sender.until_said("[TLO:")
-    assert float(told[5:-1]) == pytest.approx(-48.5, abs=0.2)
+    assert float(told[5:-1]) == pytest.approx(sender.position[2] + 1.5) and -11 < sender.position[2] < -10
     assert sender.until_said("[PRB:").endswith(":1]")
     sender.until(lambda: float(sender.status["wpos"]["z"]) == pytest.approx(-1.5, abs=0.01))
 
@@ -135,10 +133,11 @@ def test_a_reset_in_motion(sender: Cncjs) -> None:
     sender.command("reset")
     sender.until_said("ALARM:3 (Abort during cycle")
     sender.until_state("Alarm")
-    there = sender.position
+    there = sender.rest()
     sender.command("unlock")
     sender.until_state("Idle")
     assert sender.position == there and -90 < there[0] < 0
+    assert sender.last["controller:settings"][1]["version"] == "1.1h"  # of the greeting
 
 
 def test_homing_and_sleep(sender: Cncjs) -> None:

@@ -4,7 +4,7 @@
 #     tools/setup.sh [SET...]
 # A SET is an optional set of Python packages in requirements-SET.txt (yosys, fpga, ...); or `firmware`:
 # Debian's compiler for the STM32; or `browser`: Debian's headless Chromium; or `vhdl`: Debian's GHDL; or `gcode`: rs274, the
-# interpreter of Debian's LinuxCNC. Safe to run again at any time: it installs only what is missing.
+# interpreter of Debian's LinuxCNC; or `cncjs`: the sender of that name, where npm is. Safe to run again at any time: it installs only what is missing.
 # PYTHON selects the interpreter for the environment (default: python3).
 
 set -euo pipefail

@@ -16,6 +16,7 @@ from passo.toolchain import paths
 SCRIPT = paths.tests / "cncjs" / "controller.js"
 MODULES = paths.root / ".venv" / "cncjs" / "node_modules"
 MISSING = "" if shutil.which("node") and (MODULES / "cncjs").is_dir() else "no Node.js with npm: no cncjs"
+REPORTS = 1.0  # seconds: cncjs asks four times in each
 
 
 class Cncjs:
@@ -73,10 +74,19 @@ class Cncjs:
         self.last.pop("controller:state", None)
         self.until(lambda: self.status.get("activeState") == name)
 
+    def rest(self) -> list[float]:
+        """Wait for the end of a motion, which no state tells; return the machine position."""
+        before: list[float] = []
+        while before != (before := self.position):
+            time.sleep(REPORTS)
+        return before
+
     def until_said(self, text: str, since: int = 0) -> str:
         """Wait for a line of its console that begins so, after the first `since` lines; return it."""
         found: list[str] = []
-        self.until(lambda: found.extend(line for line in self.lines[since:] if line.startswith(text)) or found)
+        self.until(
+            lambda: found.extend(line for line in self.lines[since:] if line.startswith(text)) or found
+        )
         return found[0]
 
     @property
