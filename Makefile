@@ -33,7 +33,7 @@ setup: ## Install the prerequisites; other targets call it automatically.
 	@tools/setup.sh
 
 test: ## Lint the sources, then run all tests.
-	@tools/setup.sh yosys formal firmware browser web vhdl hdl path gcode
+	@tools/setup.sh yosys formal firmware browser web vhdl hdl path gcode cncjs
 	@$(MAKE) lint
 	@$(BIN)/pytest -n $$(($$(nproc) < 8 ? $$(nproc) + 1 : 8)) --dist worksteal # one more: some tests wait
 

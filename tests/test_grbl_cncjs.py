@@ -16,7 +16,7 @@ from tests.helpers.grbl_terminals import board_at, console_at
 pytestmark = pytest.mark.skipif(bool(MISSING), reason=MISSING)
 PATIENCE = 60
 TRAVEL = 40  # mm: the probe acts at -10
-LINES = 150  # more than the look-ahead and the 120 bytes of cncjs hold
+LINES = 100  # more than the look-ahead and the 120 bytes of cncjs hold
 PART = ["G21 G90", *(f"G1 X-{2 + i % 2 * 0.1:g} Y-{i * 0.1:g} F6000" for i in range(LINES)), "M2"]
 END = [-2.1, -0.1 * (LINES - 1), 0]
 BOARD_HZ = 36_000_000
