@@ -84,7 +84,7 @@ def test_a_job_on_the_firmware(tmp_path: Path, machine: MachineFile) -> None:
 
 
 def test_a_bad_line_stops_a_job(sender: Cncjs) -> None:
-    """It is told which line, and what is wrong with it."""
+    """cncjs sees which line, and what is wrong with it."""
     sender.command("gcode:load", "part", "G0 X-1\nG1 X-2 F600\nG1 Y1 Y2\nG0 X-3")
     sender.command("gcode:start")
     sender.until_said("error:25")

@@ -17,7 +17,8 @@
 /* Size of the receive buffer, one more than it holds; character counting needs at least 128. */
 #define PASSO_GRBL_RECEIVED 256u
 
-/* The most room in it that is reported, as grbl: senders may miscount by a line or two (cncjs, at each pause). */
+/* Largest room that is reported, as by grbl: a sender may miscount by a line or two (cncjs, at each pause).
+ */
 #define PASSO_GRBL_TOLD_ROOM 128u
 
 /* Interval of offsets (WCO) in status reports. */
