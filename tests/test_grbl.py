@@ -54,7 +54,7 @@ def test_reports(session: Session) -> None:
     """Fields that senders read; offsets in the first report and after a change."""
     first = session.report()
     assert first["state"] == "Idle" and first["MPos"] == "0.000,0.000,0.000"
-    assert first["WCO"] == "0.000,0.000,0.000" and first["FS"] == "0,0" and first["Bf"] == "48,255"
+    assert first["WCO"] == "0.000,0.000,0.000" and first["FS"] == "0,0" and first["Bf"] == "48,128"
     assert session.report()["Ov"] == "100,100,100"
     assert session.line("N7 G10 L2 P1 X-1.5 Y2") == "ok"
     assert session.report()["WCO"] == "-1.500,2.000,0.000"

@@ -1,36 +1,28 @@
 # SPDX-License-Identifier: MIT
 """Random histories of a sender of grbl, judged from outside; `make grbl-histories` plays thousands."""
 
-from pathlib import Path
-
 import pytest
 from passo import random_cases
-from passo.toolchain import paths
-from passo_stm32.grbl_board import grbl_elf
 
 from tests.helpers.grbl_histories import made_of, shrink
 from tests.helpers.grbl_judge import FindingError, judge
-from tests.helpers.grbl_play import BAUD, findings, play_on_board, play_on_model, program
+from tests.helpers.grbl_play import board_elf, finding, play_on_board, play_on_model, program
 
 HISTORIES, ON_BOARD = 25, 2
 IDLE = "<Idle|MPos:0.000,0.000,0.000|FS:0,0>"
 
 
-def test_on_the_model(tmp_path: Path) -> None:
-    made, first = program(tmp_path), 1000 * random_cases.seed()
+def test_on_the_model() -> None:
+    made, first = program(), 1000 * random_cases.seed()
     histories = [made_of(seed) for seed in range(first, first + HISTORIES)]
     for seed, log in enumerate(play_on_model(made, histories), first):
-        try:
-            judge(log)
-        except FindingError as found:
-            pytest.fail(f"history {seed}: {found}")
+        assert not finding(log), seed
 
 
 def test_on_the_firmware() -> None:
-    elf = grbl_elf(paths.build / "tests" / "grbl_histories", "AXES=3", f"BAUD={BAUD}")
-    first = 1000 * random_cases.seed()
+    elf, first = board_elf(), 1000 * random_cases.seed()
     for seed in range(first, first + ON_BOARD):
-        assert not findings(lambda history: play_on_board(elf, history), made_of(seed)), seed
+        assert not finding(play_on_board(elf, made_of(seed)), serial=True), seed
 
 
 LINE, JOG, CHECK = b"X1 X2\n".hex(), b"$J=G91X1F9\n".hex(), b"$C\n".hex()
@@ -60,6 +52,14 @@ def test_what_the_judge_finds(log: list[str], what: str) -> None:
     with pytest.raises(FindingError) as found:
         judge([*log, "> 1000 18"])
     assert what in str(found.value)
+
+
+def test_a_serial_line_has_no_batches() -> None:
+    """There a resume may be served after the hold before it; a hold after a resume holds."""
+    after = ["< 300 <Run|FS:0,0>", "> 1000 18"]
+    judge([f"< 1 {IDLE}", "> 2 217e", *after], serial=True)
+    with pytest.raises(FindingError):
+        judge([f"< 1 {IDLE}", "> 2 7e21", *after], serial=True)
 
 
 def test_histories_shrink() -> None:

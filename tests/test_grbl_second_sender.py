@@ -1,19 +1,18 @@
 # SPDX-License-Identifier: MIT
 """Another sender, pygrbl-streamer, at the pseudo-terminal of a console with homes and a probe."""
 
-import os
 import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from passo.grbl import Grbl, pseudo_terminal, serve
-from passo.grbl_setup import machine_at
+from passo.grbl import Grbl
 from passo.machine_file import read_machine
 from pygrbl_streamer import GrblStreamer
 
 from tests.helpers.grbl_machine import MACHINE
+from tests.helpers.grbl_terminals import console_at
 
 PATIENCE = 60  # seconds
 PART = ["G21 G90", *(f"G1 X-{2 + i % 2 * 0.1:g} Y-{i * 0.1:g} F6000" for i in range(60)), "G4 P0.1", "M30"]
@@ -39,13 +38,9 @@ class Sender(GrblStreamer):
 @pytest.fixture
 def connected(tmp_path: Path) -> Iterator[tuple[Sender, Grbl]]:
     """Connected, and unlocked."""
-    link, over, path = tmp_path / "grbl", threading.Event(), tmp_path / "machine.toml"
+    link, path = tmp_path / "grbl", tmp_path / "machine.toml"
     path.write_text(MACHINE)
-    machine = read_machine(path)
-    with machine_at("model", machine) as engine, pseudo_terminal(link) as ours:
-        grbl = Grbl(engine, machine, lambda text: os.write(ours, text.encode()))
-        thread = threading.Thread(target=serve, args=(grbl, ours, over.is_set))
-        thread.start()
+    with console_at(link, read_machine(path)) as grbl:
         sender = Sender(str(link))
         try:
             sender.connect(status_timeout=PATIENCE)
@@ -53,8 +48,6 @@ def connected(tmp_path: Path) -> Iterator[tuple[Sender, Grbl]]:
             yield sender, grbl
         finally:
             sender.disconnect()
-            over.set()
-            thread.join()
 
 
 def until(condition: Callable[[], bool]) -> None:

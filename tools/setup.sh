@@ -4,7 +4,8 @@
 #     tools/setup.sh [SET...]
 # A SET is an optional set of Python packages in requirements-SET.txt (yosys, fpga, ...); or `firmware`:
 # Debian's compiler for the STM32; or `browser`: Debian's headless Chromium; or `vhdl`: Debian's GHDL; or `gcode`: rs274, the
-# interpreter of Debian's LinuxCNC. Safe to run again at any time: it installs only what is missing.
+# interpreter of Debian's LinuxCNC; or `cncjs`: the controller of that sender, where npm is. Safe to run again at any
+# time: it installs only what is missing.
 # PYTHON selects the interpreter for the environment (default: python3).
 
 set -euo pipefail
@@ -37,6 +38,7 @@ headers="lz4.h:liblz4-dev zlib.h:zlib1g-dev"
 
 python_sets=()
 rs274=""
+cncjs=""
 for name in "$@"; do
     if [ "$name" = firmware ]; then
         tools+=" arm-none-eabi-gcc:gcc-arm-none-eabi"
@@ -47,6 +49,8 @@ for name in "$@"; do
         tools+=" ghdl:ghdl"
     elif [ "$name" = gcode ]; then
         rs274=.venv/rs274
+    elif [ "$name" = cncjs ]; then
+        cncjs=.venv/cncjs
     else
         python_sets+=("$name")
     fi
@@ -110,9 +114,14 @@ missing_sets() {
 
 rs274_is_there() { [ -z "$rs274" ] || [ -x "$rs274/rs274" ]; }
 
+# Without npm there is nothing to install with: its tests say so. The lock file is the key.
+cncjs_is_there() {
+    [ -z "$cncjs" ] || ! command -v npm >/dev/null || cmp -s tests/cncjs/package-lock.json "$cncjs/installed.json"
+}
+
 sets=$(missing_sets "${python_sets[@]}")
 missing=$(missing_tools)
-if [ -z "$missing" ] && [ -z "$sets" ] && venv_is_current && rs274_is_there; then
+if [ -z "$missing" ] && [ -z "$sets" ] && venv_is_current && rs274_is_there && cncjs_is_there; then
     step "Setup is complete."
     exit 0
 fi
@@ -237,6 +246,15 @@ if ! rs274_is_there; then
     step "Unpacking rs274 from Debian's linuxcnc-uspace (22 MB)"
     tools/unpack_rs274.sh "$rs274" || fail "rs274 cannot be had: Debian's linuxcnc-uspace, and what it needs, is missing." \
         "Check that the Debian mirror can be reached, then run 'make setup' again."
+fi
+
+if ! cncjs_is_there; then
+    step "Installing the controller of cncjs with npm (24 MB)"
+    mkdir -p "$cncjs"
+    cp tests/cncjs/package.json tests/cncjs/package-lock.json "$cncjs"
+    npm ci --prefix "$cncjs" --ignore-scripts --no-audit --no-fund --silent || fail "npm could not install cncjs." \
+        "Check the network and npm's own configuration (npm config list), then run 'make setup' again."
+    cp tests/cncjs/package-lock.json "$cncjs/installed.json"
 fi
 
 step "Setup is complete."

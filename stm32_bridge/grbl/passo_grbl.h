@@ -17,6 +17,10 @@
 /* Size of the receive buffer, one more than it holds; character counting needs at least 128. */
 #define PASSO_GRBL_RECEIVED 256u
 
+/* Largest room that is reported, as by grbl: a sender may miscount by a line or two (cncjs, at each pause).
+ */
+#define PASSO_GRBL_TOLD_ROOM 128u
+
 /* Interval of offsets (WCO) in status reports. */
 #define PASSO_GRBL_REPORTS 30u
 

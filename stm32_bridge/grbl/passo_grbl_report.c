@@ -202,10 +202,12 @@ void passo_grbl_report(struct passo_grbl *grbl)
 	report_state(grbl);
 	report_position(grbl, (shown & REPORT_MACHINE) != 0);
 	if (shown & REPORT_BUFFER) {
+		const uint8_t room = (uint8_t)(grbl->tail - grbl->head - 1u);
+
 		passo_grbl_say(grbl, "|Bf:");
 		passo_grbl_say_number(grbl, passo_path_room(player->feed->path));
 		passo_grbl_say(grbl, ",");
-		passo_grbl_say_number(grbl, (uint8_t)(grbl->tail - grbl->head - 1u));
+		passo_grbl_say_number(grbl, room < PASSO_GRBL_TOLD_ROOM ? room : PASSO_GRBL_TOLD_ROOM);
 	}
 	if (line.number > 0) {
 		passo_grbl_say(grbl, "|Ln:");

@@ -14,6 +14,7 @@ from passo.output import write_text
 from passo.toolchain import paths
 
 from passo_stm32.board import make_firmware
+from passo_stm32.bus import TICKS_PER_SECOND
 from passo_stm32.grbl_board import FOLDER, GrblBoard, grbl_elf
 
 REPORT = paths.reference / "firmware_gcode_report.md"
@@ -92,14 +93,15 @@ def _cost(function: str) -> float:
 
 
 def stream(baud: int, lines: list[str], before: str) -> tuple[GrblBoard, Rate]:
-    """Lines by counting characters, after one that says how."""
+    """Lines by counting characters, after one that says how; until the last answer has been received."""
     board = open_board(baud)
     board.line(before)
     board.events()
     board.run(0.05)
     began, executed = board.seconds, board.instructions
     board.stream(lines, 3600)
-    rate = Rate(len(lines), board.seconds - began, board.instructions - executed)
+    ended = board.output_ticks[-1] / TICKS_PER_SECOND
+    rate = Rate(len(lines), ended - began, board.instructions - executed)
     return board, rate
 
 

@@ -27,6 +27,9 @@ class FindingError(Exception):
 class Judge:
     """Reads a log from its beginning; raises FindingError."""
 
+    serial: bool = (
+        False  # bytes come one by one: a resume may be served after the hold before it, in a poll of its own
+    )
     pending: list[str] = field(default_factory=list)  # lines without an answer
     part: str = ""
     steps: tuple[int, ...] = (0, 0, 0)
@@ -69,6 +72,10 @@ class Judge:
             elif int(code, 16) < 0x80 and code not in ("21", "7e", "3f"):
                 self._byte(chr(int(code, 16)))
         holding = "21" in batch or "84" in batch
+        if self.serial and "7e" in batch and holding:
+            holding = batch[::-1].index("7e") > min(
+                batch[::-1].index(hold) for hold in ("21", "84") if hold in batch
+            )
         if self.state == "Check" and "$C" in self._flight():
             self.rests = -1
         if self.state == "Alarm" and ("$X" in self._flight() or "$H" in self._flight()):
@@ -181,9 +188,15 @@ class Judge:
             raise FindingError(f"no answer to {self.pending}")
 
 
-def judge(log: list[str]) -> None:
-    """Judge a log; raises FindingError. Before the last reset all must have been answered."""
-    made, reset = Judge(), max(i for i, line in enumerate(log) if re.fullmatch(r"> \d+ 18", line))
+def judge(log: list[str], serial: bool = False) -> None:
+    """Judge a log, of a serial line or of batches of bytes; raises FindingError.
+
+    Before the last reset all must have been answered.
+    """
+    made, reset = (
+        Judge(serial=serial),
+        max(i for i, line in enumerate(log) if re.fullmatch(r"> \d+ 18", line)),
+    )
     for i, line in enumerate(log):
         if i == reset and made.state != "Sleep":
             made.end()
