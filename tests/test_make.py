@@ -166,4 +166,4 @@ def test_too_many_axes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> No
     path = tmp_path / "five.toml"
     path.write_text(TEXT + more)
     assert main(["make", str(path), "--out", str(tmp_path / "out")]) == 2
-    assert "axes: 5 are wanted, and the table has pins for 4" in capsys.readouterr().err
+    assert "axes: 5 requested, but the table has pins for 4" in capsys.readouterr().err
