@@ -115,5 +115,9 @@ module passo_registers #(
     end
   end
 
+`ifdef FORMAL
+  `include "passo_registers_formal.vh"
+`endif
+
 endmodule
 `resetall

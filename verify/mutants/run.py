@@ -38,11 +38,13 @@ def run_core(core: Core, seed: int, each: int, only: Collection[str]) -> list[Sc
     pins = rtl_judge.Pins(core, chosen, fates, soak, library, seed, _say)
     first, second, third = rtl_judge.ROUNDS[core.name]
     pins.judge(first)
+    equivalence.judge(core, chosen, fates, _say, equivalence.MODULE)
     formal_judge.judge(core, chosen, fates, _say, formal_judge.LIMIT)
     pins.judge(second)
-    registers_judge.judge(core, chosen, fates, library, seed, _say)
+    equivalence.judge(core, chosen, fates, _say, equivalence.CORE)
     pins.judge(third)
-    equivalence.judge(core, chosen, fates, _say)
+    for name in (registers_judge.NAME, registers_judge.MORE):
+        registers_judge.judge(core, chosen, fates, library, seed, _say, name)
     return scores(chosen, fates)
 
 
