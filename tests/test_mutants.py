@@ -12,6 +12,7 @@ from verify.mutants import formal_judge
 from verify.mutants.c_judge import Worker
 from verify.mutants.c_source import drawn as drawn_c
 from verify.mutants.netlist import PLAIN, Core, Mutant, drawn
+from verify.mutants.netlist import library as verilated
 from verify.soak.parts import SETS
 from verify.soak.program import build
 
@@ -25,8 +26,8 @@ FILE = "passo_gcode_angle.c"
 @pytest.fixture(scope="module")
 def sample() -> tuple[list[Mutant], Path]:
     """Mutants, and the library with them."""
-    mutants, library, _ = drawn(SAMPLE, SEED, EACH)
-    return mutants, library
+    mutants, _ = drawn(SAMPLE, SEED, EACH)
+    return mutants, verilated(SAMPLE)
 
 
 def command(library: Path, *more: str) -> list[str]:
@@ -65,7 +66,7 @@ def test_a_judge_that_is_switched_off_scores_0(sample: tuple[list[Mutant], Path]
 
 def test_a_promise_kills_a_mutant() -> None:
     """One of some, in modules whose proofs are quick; without a mutant these are proved."""
-    mutants, _, _ = drawn(SAMPLE, SEED, EACH)
+    mutants, _ = drawn(SAMPLE, SEED, EACH)
     killed = 0
     for module in ("passo_admission", "passo_line", "passo_path"):
         some = [mutant for mutant in mutants if mutant.module == module]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What identifies a cell of a netlist of yosys: its kind, its place in the source, the wires that it leads to."""
+"""What identifies a cell of a netlist of yosys: kind, place in the source, and the wires that it leads to."""
 
 import re
 from typing import Any
@@ -65,8 +65,11 @@ def targets(module: dict[str, Any]) -> dict[str, str]:
         bits_of: dict[str, list[int]] = {}
         for wire, place in sorted(found):
             bits_of.setdefault(wire, []).append(place)
-        one = {wire: f"{wire}[{places[0]}]" if len(places) == 1 and wire in wide else wire for wire, places in bits_of.items()}
-        return ", ".join(one[wire] for wire in list(bits_of)[:3])
+        shown = (
+            f"{wire}[{places[0]}]" if len(places) == 1 and wire in wide else wire
+            for wire, places in list(bits_of.items())[:3]
+        )
+        return ", ".join(shown)
 
     return {name: follow(name) for name in module["cells"]}
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Mutants that are no faults: a solver proves that outputs and next states are the same from any state.
 
-All registers of the module become inputs and outputs, and the mutants of a module are in one netlist: of its two copies
-in the problem one has no mutant, the other one has the mutant that a constant selects. What the module alone does not
-show, since its neighbors make the mutant harmless, is tried in the whole core.
+All registers of the module become inputs and outputs. Its mutants are in one netlist, of which the problem
+has two copies: one without a mutant, one with the mutant that a constant selects. What the module alone does
+not show, since its neighbors make the mutant harmless, is tried in the whole core.
 """
 
 import re
@@ -55,7 +55,8 @@ def two_copies(problem: str, number: int) -> str:
         def renamed(found: re.Match[str], copy: str = copy, common: set[str] = common) -> str:
             return found[1] if found[1] in common else f"{found[1][:-1]}_{copy}|"
 
-        made += [f"(define-fun {name[:-1]}_{copy}| () {_OF_STATE.sub(renamed, body)}" for name, body in defined]
+        for name, body in defined:
+            made.append(f"(define-fun {name[:-1]}_{copy}| () {_OF_STATE.sub(renamed, body)}")
     outputs = re.findall(r"^; yosys-smt2-output (\S+) ", problem, re.M)
     same = [f"(= |{module[1]}_n {name}_a| |{module[1]}_n {name}_b|)" for name in outputs]
     return "\n".join([*made, f"(assert (not (and true {' '.join(same)})))", "(check-sat)"]) + "\n"
@@ -85,7 +86,9 @@ def equal(problem: Path, number: int, limit: int) -> bool:
     return said[0] == "unsat"
 
 
-def judge(core: Core, mutants: Sequence[Mutant], fates: Fates, show: Callable[[str], None], case: str) -> None:
+def judge(
+    core: Core, mutants: Sequence[Mutant], fates: Fates, show: Callable[[str], None], case: str
+) -> None:
     """Prove what can be proved of the mutants that live: each in its module, or all in the core."""
     groups: dict[tuple[str, str], list[Mutant]] = {}
     for mutant in mutants:

@@ -42,11 +42,18 @@ class Core:
     parameters: Parameters
     modules: tuple[str, ...] = ()  # those of which mutants are made; empty: all that it has
     without: tuple[str, ...] = ()
+    top: str = TOP
+    played: bool = True  # by the soak: the top has SPI
 
     @property
     def folder(self) -> Path:
         """Where its netlist is made."""
         return BUILD / self.name
+
+    @property
+    def netlist(self) -> Path:
+        """The core with all its mutants."""
+        return self.folder / f"mutants_{self.name}.v"
 
 
 # What a core of two channels has as well; the rest is in a core with all parts.
@@ -85,7 +92,12 @@ MACHINED = Core(
     MACHINE,
     without=tuple(module for module in PLAIN.modules if module not in BOTH),
 )
-CORES = (PLAIN, MACHINED)
+# Buses are judged by their promises alone.
+WISHBONE = Core(
+    "wishbone", Parameters(), ("passo_wishbone", "passo_words"), top="passo_wishbone", played=False
+)
+AXI_LITE = Core("axi_lite", Parameters(), ("passo_axi_lite",), top="passo_axi_lite", played=False)
+CORES = (PLAIN, MACHINED, WISHBONE, AXI_LITE)
 
 
 @dataclass(frozen=True)
@@ -167,7 +179,7 @@ def read(core: Core, folder: Path) -> str:
         (folder / source.name).write_bytes(source.read_bytes())
     files = " ".join(source.name for source in rtl_sources())
     chosen = " ".join(f"-chparam {name} {value}" for name, value in core.parameters.verilog().items())
-    return f"read_verilog -I. {files}\nhierarchy -top {TOP} {chosen}\nproc\nmemory_collect\nopt_clean\n"
+    return f"read_verilog -I. {files}\nhierarchy -top {core.top} {chosen}\nproc\nmemory_collect\nopt_clean\n"
 
 
 def _file(module: str) -> str:
@@ -175,18 +187,24 @@ def _file(module: str) -> str:
     return re.sub(r"^\$paramod(?:\$[0-9a-f]+)?\\", "", module).split("\\")[0]
 
 
-def drawn(core: Core, seed: int, each: int) -> tuple[list[Mutant], Path, str]:
-    """Mutants of a core, the same as long as the RTL is; its Verilated netlist, and what identifies that."""
+def drawn(core: Core, seed: int, each: int) -> tuple[list[Mutant], str]:
+    """Mutants of a core, the same as long as the RTL is, and what identifies them."""
     hashed = hash_of([*rtl_sources(), *sorted(paths.rtl.glob("*.vh"))], core.name, f"{seed} {each}")
-    kept, netlist = core.folder / "mutants.json", core.folder / f"mutants_{core.name}.v"
+    kept = core.folder / "mutants.json"
     stored = json.loads(kept.read_text()) if kept.exists() else {}
     if stored.get("hash") != hashed:
         mutants = draw(core, seed, each)
-        write(core, mutants, netlist)
+        if core.played:
+            write(core, mutants, core.netlist)
         write_json({"hash": hashed, "mutants": [asdict(mutant) for mutant in mutants]}, kept)
     else:
         mutants = [Mutant(**mutant) for mutant in stored["mutants"]]
-    return mutants, rtl_library(core.parameters, rtl=netlist), hashed
+    return mutants, hashed
+
+
+def library(core: Core) -> Path:
+    """The Verilated netlist of a core of which mutants have been drawn."""
+    return rtl_library(core.parameters, rtl=core.netlist)
 
 
 def draw(core: Core, seed: int, each: int) -> list[Mutant]:
@@ -199,7 +217,8 @@ def draw(core: Core, seed: int, each: int) -> list[Mutant]:
         file = _file(name)
         if not ((core.modules and file not in core.modules) or file in core.without):
             files.setdefault(file, []).append(name)
-    lists = {name: f"list{i}.txt" for i, name in enumerate(name for names in files.values() for name in names)}
+    drawn_from = [name for names in files.values() for name in names]
+    lists = {name: f"list{i}.txt" for i, name in enumerate(drawn_from)}
     draws = "".join(
         f"mutate -list {ALL} -seed {seed} -module {name} -o {text}\n" for name, text in lists.items()
     )
