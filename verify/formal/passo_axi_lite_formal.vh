@@ -9,11 +9,11 @@ always @(posedge clk) begin
   f_ran     <= f_started & ~rst;
   if (!f_started) axi_reset : assume (rst);
   if (f_ran && $past(s_axil_awvalid && !s_axil_awready))
-    address_stands : assume (s_axil_awvalid && $stable(s_axil_awaddr));
+    axi_address_stands : assume (s_axil_awvalid && $stable(s_axil_awaddr));
   if (f_ran && $past(s_axil_wvalid && !s_axil_wready))
-    data_stand : assume (s_axil_wvalid && $stable(s_axil_wdata) && $stable(s_axil_wstrb));
+    axi_data_stand : assume (s_axil_wvalid && $stable(s_axil_wdata) && $stable(s_axil_wstrb));
   if (f_ran && $past(s_axil_arvalid && !s_axil_arready))
-    read_stands : assume (s_axil_arvalid && $stable(s_axil_araddr));
+    axi_read_stands : assume (s_axil_arvalid && $stable(s_axil_araddr));
 end
 
 // --- The pins

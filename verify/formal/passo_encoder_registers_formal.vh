@@ -8,7 +8,7 @@ always @(posedge clk) begin
   f_started <= 1'b1;
   f_ran     <= f_started & ~rst;
   if (!f_started) encoder_registers_reset : assume (rst);
-  if (f_access) address_stands : assume (f_started && $stable(bus_address) && $stable(select));
+  if (f_access) registers_address_stands : assume (f_started && $stable(bus_address) && $stable(select));
 end
 
 // --- Which register an access means

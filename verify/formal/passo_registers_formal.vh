@@ -7,7 +7,7 @@ always @(posedge clk) begin
   f_started <= 1'b1;
   f_ran     <= f_started & ~rst;
   if (!f_started) registers_reset : assume (rst);
-  if (bus_write || bus_read) address_stands : assume (f_started && $stable(bus_address));
+  if (bus_write || bus_read) registers_address_stands : assume (f_started && $stable(bus_address));
 end
 
 // --- What the host has written to RUN, and what it reads

@@ -36,7 +36,6 @@ def run_core(core: Core, seed: int, each: int, only: Collection[str]) -> list[Sc
     fates = Fates(f"rtl_{core.name}", hash_of([soak], hashed, str(seed)))
     chosen = [mutant for mutant in first_of(mutants, each) if not only or mutant.module in only]
     if not core.played:
-        equivalence.judge(core, chosen, fates, _say, equivalence.MODULE)
         formal_judge.judge(core, chosen, fates, _say, formal_judge.LIMIT)
         return scores(chosen, fates)
     verilated = library(core)
