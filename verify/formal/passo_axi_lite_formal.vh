@@ -30,6 +30,7 @@ wire f_read = s_axil_arready & s_axil_arvalid;
 wire f_both = s_axil_awvalid & s_axil_wvalid & s_axil_arvalid;
 reg  f_wrote = 1'b0;  // the last access was a write
 wire f_writes = s_axil_awvalid & s_axil_wvalid & ~(f_wrote & s_axil_arvalid);
+wire f_asks = (f_writes | s_axil_arvalid) & ~(s_axil_bvalid | s_axil_rvalid);
 wire f_address = f_writes ? s_axil_awaddr[2] : s_axil_araddr[2];
 wire [3:0] f_lanes = f_writes ? s_axil_wstrb : 4'hF;
 always @(posedge clk) begin
@@ -49,7 +50,9 @@ always @(posedge clk)
     one_at_a_time : assert (!(s_axil_bvalid && s_axil_rvalid));
     if (s_axil_bvalid || s_axil_rvalid) none_while_answering : assert (!s_axil_awready && !s_axil_arready);
     words_go_in_and_out :
-    assert (s_axil_rdata == {s_axil_wdata[31:16], 4'd0, s_axil_wdata[7:0], f_lanes ^ {2'd0, f_writes, f_address}});
+    assert (s_axil_rdata == {
+      s_axil_wdata[31:16], s_axil_wdata[27:16] ^ {4'd0, s_axil_wdata[7:0]}, f_lanes ^ {1'b0, f_asks, f_writes, f_address}
+    });
     responses : assert (s_axil_bresp == s_axil_rresp && !s_axil_bresp[0]);
     errors_are_told : assert (s_axil_bresp[1] == $past(s_axil_wdata[15] ^ f_address));
   end else if (f_started) reset_answers : assert (!s_axil_bvalid && !s_axil_rvalid);

@@ -42,5 +42,5 @@ module passo_core #(
   assign compare    = sync;
   assign running    = estop_n;
   assign irq        = rst;
-  assign reply_word = {half, 12'd0, frame_start, frame_end, half_valid, half_low};
+  assign reply_word = {half, half[11:0], frame_start, frame_end, half_valid, half_low};
 endmodule

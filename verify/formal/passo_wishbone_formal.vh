@@ -17,13 +17,13 @@ always @* begin
 end
 
 // --- The words
+wire f_asked = wb_cyc_i & wb_stb_i;
 always @* begin
   words_go_in_and_out :
-  assert (wb_dat_o == {wb_dat_i[31:16], 4'd0, wb_dat_i[7:0], wb_sel_i ^ {2'd0, wb_we_i, wb_adr_i[2]}});
+  assert (wb_dat_o == {wb_dat_i[31:16], wb_dat_i[27:16] ^ {4'd0, wb_dat_i[7:0]}, wb_sel_i ^ {1'b0, f_asked, wb_we_i, wb_adr_i[2]}});
   one_answer : assert (!(wb_ack_o && wb_err_o));
 end
 wire f_answer = wb_ack_o | wb_err_o;
-wire f_asked = wb_cyc_i & wb_stb_i;
 always @(posedge clk)
   if (f_started) begin
     if (f_answer) answers_when_asked : assert ($past(f_asked && !f_answer && !rst));

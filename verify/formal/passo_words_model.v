@@ -24,7 +24,7 @@ module passo_words (
   (* anyseq *) wire answers;
   assign {frame_start, frame_end, half_valid, half_low} = lanes;
   assign half      = write_data[31:16];
-  assign read_data = reply_word ^ {20'd0, write_data[7:0], 2'd0, write, address};
+  assign read_data = reply_word ^ {20'd0, write_data[7:0], 1'b0, request, write, address};
   always @(posedge clk) begin
     done  <= ~rst & request & ~done & answers;
     error <= write_data[15] ^ address;
