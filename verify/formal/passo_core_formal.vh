@@ -40,6 +40,5 @@ always @(posedge clk) begin
   end
 end
 
-`ifdef INVARIANTS
+// --- What the induction relies on
 always @(posedge clk) if (f_started) assert (f_clocks == slew_count && f_sync == sync_q);
-`endif

@@ -49,10 +49,9 @@ always @(posedge clk) begin
     reset_settings : assert (f_setup == 5'd0 && ratio == ENCODER_RATIO_RESET && limit == ENCODER_LIMIT_RESET);
 end
 
-`ifdef INVARIANTS
+// --- What the induction relies on
 always @(posedge clk)
   if (f_started) begin
     assert (count == f_count && latch == f_latch && indexes == f_indexes);
     assert (index_event_q == f_indexed);
   end
-`endif

@@ -60,10 +60,9 @@ always @(posedge clk)
             && filter == CHANNEL_ENCODER_FILTER_FILTER_RESET);
   end
 
-`ifdef INVARIANTS
+// --- What the induction relies on
 always @(posedge clk) begin
   assert (f_set_follow == write_follow || !f_started);
   assert (f_set_limit == write_follow_limit || !f_started);
   assert (f_set_filter == write_filter || !f_started);
 end
-`endif

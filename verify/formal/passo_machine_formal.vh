@@ -32,6 +32,5 @@ always @(posedge clk) begin
   end else if (f_started) filter_outlives_a_reset : assert (filter == $past(filter));
 end
 
-`ifdef INVARIANTS
+// --- What the induction relies on
 always @(posedge clk) if (f_started) assert (f_since == count);
-`endif

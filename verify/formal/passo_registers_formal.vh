@@ -58,10 +58,9 @@ always @(posedge clk)
       ? {$past(bus_data[18:16]), $past(bus_data[8+:CHANNELS]), $past(bus_data[CHANNELS-1:0])} : $past(f_kept)));
   end else if (f_started) reset_run : assert (f_kept == {2 * CHANNELS + 3{1'b0}});
 
-`ifdef INVARIANTS
+// --- What the induction relies on
 always @(posedge clk)
   if (f_ran) begin
     assert (is_run == ($past(bus_address) == ADDRESS_RUN));
     assert (known == ($past(bus_address) <= ADDRESS_REFUSALS_1));
   end
-`endif
