@@ -79,9 +79,7 @@ def check_keeping(table: Table, rng: random.Random) -> None:
     Raises:
         AssertionError: It does not.
     """
-    kept = {
-        address: register for address, register in table.registers if {"r", "w"} <= set(register.access)
-    }
+    kept = {address: register for address, register in table.registers if {"r", "w"} <= set(register.access)}
     shown = {}
     for address in rng.sample(sorted(kept), len(kept)):
         bits = [1 << n for n in range(32) if table.taken(kept[address]) >> n & 1]
