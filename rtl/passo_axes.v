@@ -205,5 +205,9 @@ module passo_axes #(
     .position      (position)
   );
 
+`ifdef FORMAL
+  `include "passo_axes_formal.vh"
+`endif
+
 endmodule
 `resetall

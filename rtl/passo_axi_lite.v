@@ -170,5 +170,9 @@ module passo_axi_lite #(
     .irq          (irq)
   );
 
+`ifdef FORMAL
+  `include "passo_axi_lite_formal.vh"
+`endif
+
 endmodule
 `resetall

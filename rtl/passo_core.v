@@ -394,5 +394,9 @@ module passo_core #(
     end
   endgenerate
 
+`ifdef FORMAL
+  `include "passo_core_formal.vh"
+`endif
+
 endmodule
 `resetall

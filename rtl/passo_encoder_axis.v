@@ -126,5 +126,9 @@ module passo_encoder_axis (
     .greatest      (greatest)
   );
 
+`ifdef FORMAL
+  `include "passo_encoder_axis_formal.vh"
+`endif
+
 endmodule
 `resetall

@@ -91,5 +91,9 @@ module passo_encoder_registers #(
     end
   end
 
+`ifdef FORMAL
+  `include "passo_encoder_registers_formal.vh"
+`endif
+
 endmodule
 `resetall

@@ -247,5 +247,9 @@ module passo_inputs #(
                      | (reads[CHANNEL_INPUT_FLAGS[2:0]] ? flags : 32'd0)
                      | (reads[CHANNEL_TRIGGER_STATE[2:0]] ? state : 32'd0);
 
+`ifdef FORMAL
+  `include "passo_inputs_formal.vh"
+`endif
+
 endmodule
 `resetall

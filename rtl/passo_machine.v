@@ -81,5 +81,9 @@ module passo_machine (
     .disable_drives(disable_drives)
   );
 
+`ifdef FORMAL
+  `include "passo_machine_formal.vh"
+`endif
+
 endmodule
 `resetall

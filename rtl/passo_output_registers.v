@@ -99,5 +99,9 @@ module passo_output_registers #(
     end
   end
 
+`ifdef FORMAL
+  `include "passo_output_registers_formal.vh"
+`endif
+
 endmodule
 `resetall

@@ -123,5 +123,9 @@ module passo_registers #(
     end
   end
 
+`ifdef FORMAL
+  `include "passo_registers_formal.vh"
+`endif
+
 endmodule
 `resetall

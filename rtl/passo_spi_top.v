@@ -124,5 +124,9 @@ module passo_spi_top #(
     .irq          (irq)
   );
 
+`ifdef FORMAL
+  `include "passo_spi_top_formal.vh"
+`endif
+
 endmodule
 `resetall

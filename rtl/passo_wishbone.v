@@ -142,5 +142,9 @@ module passo_wishbone #(
     .irq          (irq)
   );
 
+`ifdef FORMAL
+  `include "passo_wishbone_formal.vh"
+`endif
+
 endmodule
 `resetall

@@ -25,6 +25,7 @@ from passo.failure import Failure
 from passo.toolchain import environment
 
 from verify.formal import run as formal
+from verify.mutants.cells import Cells, cells_by_place
 from verify.mutants.fates import BUILD, Fates, hash_of
 from verify.mutants.netlist import SELECT, WIDTH, Core, Mutant, selected, yosys
 
@@ -46,71 +47,6 @@ def proofs_of(module: str) -> tuple[formal.Proof, ...]:
     """The proofs that say something of a module, the one of its own name first."""
     found = [proof for proof in formal.proofs() if _reads(proof, module)]
     return tuple(sorted(found, key=lambda proof: (proof.slow, f"passo_{proof.name}" != module)))
-
-
-def _kind(name: str) -> str:
-    return name.split("$")[1] if name.startswith("$") and name.count("$") > 1 else name
-
-
-Cells = dict[tuple[str, str, str], list[str]]
-
-
-def _named(module: dict[str, Any]) -> dict[int, str]:
-    """The names of bits without the numbers of yosys: of a wire, or of what a process gives it."""
-    found: dict[int, str] = {}
-    for name, net in sorted(module["netnames"].items()):
-        given = re.fullmatch(r"\$0\\(.+)\[\d+:\d+\]", name)
-        if given or not name.startswith("$"):
-            for place, bit in enumerate(net["bits"]):
-                shown = f"next {given[1]}" if given else name
-                if isinstance(bit, int):
-                    found.setdefault(bit, f"{shown} {place}")
-    return found
-
-
-def _targets(module: dict[str, Any]) -> dict[str, str]:
-    """Of each cell the first named wires that it leads to."""
-    named = _named(module)
-    readers: dict[int, list[str]] = {}
-    for name, cell in module["cells"].items():
-        for port, bits in cell["connections"].items():
-            if cell["port_directions"].get(port) == "input":
-                for bit in bits:
-                    if isinstance(bit, int):
-                        readers.setdefault(bit, []).append(name)
-
-    def outputs(name: str) -> list[int]:
-        cell = module["cells"][name]
-        return [
-            bit
-            for port, bits in cell["connections"].items()
-            if cell["port_directions"].get(port) == "output"
-            for bit in bits
-            if isinstance(bit, int)
-        ]
-
-    def follow(name: str) -> str:
-        found: set[str] = set()
-        seen, front = {name}, [name]
-        while front and not found:
-            bits = [bit for one in front for bit in outputs(one)]
-            found = {named[bit] for bit in bits if bit in named}
-            next_ones = (reader for bit in bits for reader in readers.get(bit, ()) if reader not in seen)
-            front = list(dict.fromkeys(next_ones))
-            seen.update(front)
-        return ", ".join(sorted(found)[:3])
-
-    return {name: follow(name) for name in module["cells"]}
-
-
-def _cells(module: dict[str, Any]) -> Cells:
-    """The cells of a module by kind, place, and where they lead to."""
-    found: Cells = {}
-    targets = _targets(module)
-    for name, cell in module["cells"].items():
-        source = re.sub(r"[^|\s]*/", "", cell["attributes"].get("src", ""))
-        found.setdefault((_kind(name), source, targets[name]), []).append(name)
-    return found
 
 
 def _copy(proof: formal.Proof, folder: Path) -> None:
@@ -145,7 +81,7 @@ def _proof_modules(proof: formal.Proof) -> dict[str, tuple[Cells, Widths]]:
     shutil.rmtree(folder)
     return {
         name: (
-            _cells(module),
+            cells_by_place(module),
             {
                 cell: {port: len(bits) for port, bits in of["connections"].items()}
                 for cell, of in module["cells"].items()
@@ -162,7 +98,7 @@ def _core_modules(core: Path) -> dict[str, Any]:
 
 @cache
 def _core_cells(core: Path, module: str) -> Cells:
-    return _cells(_core_modules(core)[module])
+    return cells_by_place(_core_modules(core)[module])
 
 
 def _in_proof(core: Core, mutant: Mutant, proof: formal.Proof) -> list[str]:
@@ -182,9 +118,12 @@ def _in_proof(core: Core, mutant: Mutant, proof: formal.Proof) -> list[str]:
         if re.sub(r"^\$paramod(?:\$[0-9a-f]+)?\\", "", name).split("\\")[0] != mutant.module:
             continue
         same = cells.get(key, [])
-        if len(same) == len(names) == 1 and mutant.fits(widths[same[0]]):
+        if len(same) != len(names):
+            continue
+        twin = same[names.index(cell)]
+        if mutant.fits(widths[twin]):
             made = mutant.command.replace(f"-module {module} ", f"-module {name} ")
-            made = made.replace(f"-cell {cell} ", f"-cell {same[0]} ")
+            made = made.replace(f"-cell {cell} ", f"-cell {twin} ")
             commands.append(re.sub(r" -(?:src|wire|wirebit) \S+", "", made))
     return commands
 

@@ -11,13 +11,17 @@ import subprocess
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
+from hashlib import sha256
+from itertools import zip_longest
 from pathlib import Path
+from typing import Any
 
 from passo.build import TOP, Parameters, rtl_library, rtl_sources
 from passo.failure import Failure
 from passo.output import write_json
 from passo.toolchain import environment, paths
 
+from verify.mutants.cells import kind_of, numbered, targets
 from verify.mutants.fates import BUILD, hash_of
 from verify.soak.parts import MACHINE, SETS
 
@@ -25,6 +29,7 @@ SELECT = "passo_mutant"
 WIDTH = 12  # of SELECT
 # The number of the mutant, as C++ in the Verilog of Verilator.
 CHOSEN = r'$c("(getenv(\"PASSO_MUTANT\") ? atoi(getenv(\"PASSO_MUTANT\")) : 0)")'
+ALL = 1_000_000  # more mutants than any module has
 MOST = 20  # mutants of a module that are drawn; fewer are the first of them
 SET = 2  # of soak.parts.SETS: two channels of two axes
 
@@ -37,11 +42,18 @@ class Core:
     parameters: Parameters
     modules: tuple[str, ...] = ()  # those of which mutants are made; empty: all that it has
     without: tuple[str, ...] = ()
+    top: str = TOP
+    played: bool = True  # by the soak: the top has SPI
 
     @property
     def folder(self) -> Path:
         """Where its netlist is made."""
         return BUILD / self.name
+
+    @property
+    def netlist(self) -> Path:
+        """The core with all its mutants."""
+        return self.folder / f"mutants_{self.name}.v"
 
 
 # What a core of two channels has as well; the rest is in a core with all parts.
@@ -80,7 +92,12 @@ MACHINED = Core(
     MACHINE,
     without=tuple(module for module in PLAIN.modules if module not in BOTH),
 )
-CORES = (PLAIN, MACHINED)
+# Buses are judged by their promises alone.
+WISHBONE = Core(
+    "wishbone", Parameters(), ("passo_wishbone", "passo_words"), top="passo_wishbone", played=False
+)
+AXI_LITE = Core("axi_lite", Parameters(), ("passo_axi_lite",), top="passo_axi_lite", played=False)
+CORES = (PLAIN, MACHINED, WISHBONE, AXI_LITE)
 
 
 @dataclass(frozen=True)
@@ -91,13 +108,15 @@ class Mutant:
     number: int  # that selects it in the netlist
     module: str  # the file of rtl/, without .v
     command: str  # mutate -mode ...
+    leads: str  # the named wires that its cell leads to
     twin: int = 0  # among those that have the same name otherwise
 
     @property
     def name(self) -> str:
-        """The same as long as the module is: without the numbers that yosys gives."""
-        bit = f"{self.mode} {self.place} {self._word('ctrlbit')} {self.source}"
-        return f"{self.module} {bit} {self.twin}"
+        """The same as long as the cell is: without lines of the source and the numbers that yosys gives."""
+        control = f" by [{self._word('ctrlbit')}]" if self._word("ctrlbit") else ""
+        twin = f" ({self.twin})" if self.twin else ""
+        return f"{self.module}: {self.mode} of {self.place}{control} to {self.leads}{twin}"
 
     def _word(self, key: str) -> str:
         found = re.search(rf" -{key} (\S+)", self.command)
@@ -126,10 +145,7 @@ class Mutant:
     @property
     def place(self) -> str:
         """Cell, port and bit."""
-        cell, wire = self._word("cell"), self._word("wire")
-        kind = cell.split("$")[1] if "$" in cell else cell
-        of = f" of {wire}[{self._word('wirebit')}]" if wire else ""
-        return f"{kind}.{self._word('port')}[{self._word('portbit')}]{of}"
+        return f"{kind_of(self._word('cell'))}.{self._word('port')}[{self._word('portbit')}]"
 
     @property
     def source(self) -> str:
@@ -163,7 +179,7 @@ def read(core: Core, folder: Path) -> str:
         (folder / source.name).write_bytes(source.read_bytes())
     files = " ".join(source.name for source in rtl_sources())
     chosen = " ".join(f"-chparam {name} {value}" for name, value in core.parameters.verilog().items())
-    return f"read_verilog -I. {files}\nhierarchy -top {TOP} {chosen}\nproc\nmemory_collect\nopt_clean\n"
+    return f"read_verilog -I. {files}\nhierarchy -top {core.top} {chosen}\nproc\nmemory_collect\nopt_clean\n"
 
 
 def _file(module: str) -> str:
@@ -171,60 +187,83 @@ def _file(module: str) -> str:
     return re.sub(r"^\$paramod(?:\$[0-9a-f]+)?\\", "", module).split("\\")[0]
 
 
-def drawn(core: Core, seed: int, each: int) -> tuple[list[Mutant], Path, str]:
-    """Mutants of a core, the same as long as the RTL is; its Verilated netlist, and what identifies that."""
+def drawn(core: Core, seed: int, each: int) -> tuple[list[Mutant], str]:
+    """Mutants of a core, the same as long as the RTL is, and what identifies them."""
     hashed = hash_of([*rtl_sources(), *sorted(paths.rtl.glob("*.vh"))], core.name, f"{seed} {each}")
-    kept, netlist = core.folder / "mutants.json", core.folder / f"mutants_{core.name}.v"
+    kept = core.folder / "mutants.json"
     stored = json.loads(kept.read_text()) if kept.exists() else {}
     if stored.get("hash") != hashed:
         mutants = draw(core, seed, each)
-        write(core, mutants, netlist)
+        if core.played:
+            write(core, mutants, core.netlist)
         write_json({"hash": hashed, "mutants": [asdict(mutant) for mutant in mutants]}, kept)
     else:
         mutants = [Mutant(**mutant) for mutant in stored["mutants"]]
-    return mutants, rtl_library(core.parameters, rtl=netlist), hashed
+    return mutants, hashed
+
+
+def library(core: Core) -> Path:
+    """The Verilated netlist of a core of which mutants have been drawn."""
+    return rtl_library(core.parameters, rtl=core.netlist)
 
 
 def draw(core: Core, seed: int, each: int) -> list[Mutant]:
     """Draw `each` mutants from each module."""
     commands = read(core, core.folder)
     yosys(core.folder, f"{commands}write_json core.json")
-    modules: dict[str, list[str]] = {}
-    kept: set[str] = set()  # modules of which the first values of some registers are given
-    for name, module in json.loads((core.folder / "core.json").read_text())["modules"].items():
+    all_modules = json.loads((core.folder / "core.json").read_text())["modules"]
+    files: dict[str, list[str]] = {}
+    for name in sorted(all_modules):
         file = _file(name)
-        if (core.modules and file not in core.modules) or file in core.without:
-            continue
-        modules.setdefault(file, []).append(name)
-        if any("init" in net["attributes"] for net in module["netnames"].values()):
-            kept.add(file)
-    lists = []
-    for file, names in sorted(modules.items()):
-        for i, name in enumerate(sorted(names)):
-            share = (2 * MOST + i) // len(names) + 2
-            lists.append((file, name, f"list{len(lists)}.txt", share))
+        if not ((core.modules and file not in core.modules) or file in core.without):
+            files.setdefault(file, []).append(name)
+    drawn_from = [name for names in files.values() for name in names]
+    lists = {name: f"list{i}.txt" for i, name in enumerate(drawn_from)}
     draws = "".join(
-        f"mutate -list {share} -seed {seed} -module {name} -o {text}\n" for _, name, text, share in lists
+        f"mutate -list {ALL} -seed {seed} -module {name} -o {text}\n" for name, text in lists.items()
     )
     yosys(core.folder, commands + draws)
-    texts_of: dict[str, list[str]] = {}
-    longest = 0
-    for file, _, text, _ in lists:
-        lines = [line for line in (core.folder / text).read_text().splitlines() if line]
-        # mutate loses the first value of a register that it changes
-        good = [line for line in lines if not (file in kept and " -port Q " in line)]
-        texts_of.setdefault(file, []).append("\n".join(good))
-        longest = max(longest, len(good))
     mutants: list[Mutant] = []
-    for file, texts in texts_of.items():
-        columns = [text.splitlines() for text in texts]
-        mixed = [column[i] for i in range(longest) for column in columns if i < len(column)]
-        twins: Counter[str] = Counter()
-        for command in list(dict.fromkeys(mixed))[:each]:
-            mutant = Mutant(core.name, len(mutants) + 1, file, command)
-            mutants.append(replace(mutant, twin=twins[mutant.name]))
-            twins[mutant.name] += 1
-    return mutants
+    for file, names in files.items():
+        columns = []
+        for name in names:
+            made = (core.folder / lists[name]).read_text().splitlines()
+            columns.append(_mixed(core.name, file, all_modules[name], made, seed))
+        rows = (row for row in zip_longest(*columns))
+        found = {mutant.name: mutant for row in rows for mutant in row if mutant}
+        mutants += list(found.values())[:each]
+    return [replace(mutant, number=i) for i, mutant in enumerate(mutants, 1)]
+
+
+def _mixed(core: str, file: str, module: dict[str, Any], commands: Sequence[str], seed: int) -> list[Mutant]:
+    """All mutants of a module of yosys: the first of each cell, the second ones, and so on.
+
+    The order is that of hashes of the names, so that an edit of the source moves only what it touches.
+    """
+    leads = targets(module)
+    # mutate loses the first value of a register that it changes
+    kept = any("init" in net["attributes"] for net in module["netnames"].values())
+    twins: Counter[str] = Counter()
+    by_cell: dict[str, list[Mutant]] = {}
+    for command in sorted(commands, key=_ordered):
+        cell = re.search(r" -cell (\S+)", command)
+        if not cell or (kept and " -port Q " in command):
+            continue
+        mutant = Mutant(core, 0, file, command, leads[cell[1].removeprefix("\\")])
+        by_cell.setdefault(cell[1], []).append(replace(mutant, twin=twins[mutant.name]))
+        twins[mutant.name] += 1
+
+    def lot(mutant: Mutant) -> str:
+        return sha256(f"{seed} {mutant.name}".encode()).hexdigest()
+
+    columns = sorted((sorted(of, key=lot) for of in by_cell.values()), key=lambda of: lot(of[0]))
+    return [mutant for row in zip_longest(*columns) for mutant in row if mutant]
+
+
+def _ordered(command: str) -> tuple[int, str]:
+    """Cells in the order in which yosys has made them."""
+    cell = re.search(r" -cell (\S+)", command)
+    return (numbered(cell[1])[0] if cell else 0, command)
 
 
 def selected(command: str, number: int) -> str:

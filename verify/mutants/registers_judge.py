@@ -34,6 +34,7 @@ MODULES = (
     *("passo_tables", "passo_encoder_axis", "passo_positions"),
 )
 NAME = "registers"
+MORE = "registers kept"
 PLACES = 2  # addresses of a register that are tried
 BITS = 3  # of each word that are tried
 HOLES = 12  # addresses without a register that are tried
@@ -72,7 +73,40 @@ def check(table: Table, rng: random.Random) -> None:
     table.check_pushing()
 
 
-def broken(core: Core, library: Path, number: int, seed: int) -> str:
+def check_keeping(table: Table, rng: random.Random) -> None:
+    """A register shows what was written to it last, whatever is written to others.
+
+    Raises:
+        AssertionError: It does not.
+    """
+    kept = {address: register for address, register in table.registers if {"r", "w"} <= set(register.access)}
+    shown = {}
+    for address in rng.sample(sorted(kept), len(kept)):
+        bits = [1 << n for n in range(32) if table.taken(kept[address]) >> n & 1]
+        shown[address] = rng.choice(bits)
+        assert table.write(address, shown[address]) == Verdict.OK, f"0x{address:03X}"
+    for address, register in table.registers:  # what is not shown changes nothing that is
+        if "w" in register.access and address not in kept:
+            assert table.write(address, register.reset) == Verdict.OK, f"0x{address:03X}"
+    for address, word in shown.items():
+        assert table.read(address) == (Verdict.OK, word), f"{kept[address].name} at 0x{address:03X} is kept"
+    for address, register in kept.items():
+        assert table.write(address, register.reset) == Verdict.OK, f"0x{address:03X}"
+
+
+def check_more(table: Table, rng: random.Random) -> None:
+    """What is kept, what is refused while a motion runs, and the limits of the values.
+
+    Raises:
+        AssertionError: A register does not do as the table says.
+    """
+    check_keeping(table, rng)
+    check_keeping(table, rng)
+    table.check_busy()
+    table.check_limits()
+
+
+def broken(core: Core, library: Path, number: int, seed: int, name: str) -> str:
     """What a mutant breaks; it is tried in a process of its own."""
     read, write = os.pipe()
     process = os.fork()
@@ -81,7 +115,8 @@ def broken(core: Core, library: Path, number: int, seed: int) -> str:
         says = ""
         try:
             with Engine(library, core.parameters) as engine:
-                check(Table(Link(engine), core.parameters), random.Random(f"{seed} {number}"))
+                checks = check_more if name == MORE else check
+                checks(Table(Link(engine), core.parameters), random.Random(f"{seed} {number}"))
         except AssertionError as failed:
             says = str(failed).splitlines()[0] or "not as in the table"
         except Exception as failed:  # a link that is broken
@@ -96,20 +131,25 @@ def broken(core: Core, library: Path, number: int, seed: int) -> str:
 
 
 def judge(
-    core: Core, mutants: Sequence[Mutant], fates: Fates, library: Path, seed: int, show: Callable[[str], None]
+    core: Core,
+    mutants: Sequence[Mutant],
+    fates: Fates,
+    library: Path,
+    seed: int,
+    show: Callable[[str], None],
+    name: str,
 ) -> None:
-    """Let the table judge the mutants that live."""
-    waiting = [
-        mutant for mutant in mutants if mutant.module in MODULES and fates.get(mutant.name).waits(NAME)
-    ]
-    if waiting and (says := broken(core, library, 0, seed)):
+    """Let the table judge the mutants that live: some bits, or all of them."""
+    takes_part = mutants if name == MORE else [mutant for mutant in mutants if mutant.module in MODULES]
+    waiting = [mutant for mutant in takes_part if fates.get(mutant.name).waits(name)]
+    if waiting and (says := broken(core, library, 0, seed, name)):
         raise Failure(f"the table finds fault with the core itself: {says}")
     for mutant in waiting:
         fate = fates.get(mutant.name)
-        says = broken(core, library, mutant.number, seed)
-        fate.tried = [*(fate.tried or []), NAME]
+        says = broken(core, library, mutant.number, seed, name)
+        fate.tried = [*(fate.tried or []), name]
         if says:
             fate.killed, fate.says = NAME, says
         fates.save()
     living = sum(fates.get(mutant.name).lives for mutant in waiting)
-    show(f"{core.name}: registers: {living} of {len(waiting)} live")
+    show(f"{core.name}: {name}: {living} of {len(waiting)} live")

@@ -17,7 +17,7 @@ from passo.console import console
 
 from verify.mutants import c_judge, c_source, equivalence, formal_judge, registers_judge, rtl_judge
 from verify.mutants.fates import Fates, hash_of
-from verify.mutants.netlist import CORES, MOST, Core, drawn, first_of
+from verify.mutants.netlist import CORES, MOST, Core, drawn, first_of, library
 from verify.mutants.page import Score, scores, show_table, write
 from verify.soak.program import build as program
 
@@ -31,18 +31,24 @@ def _say(text: str) -> None:
 
 def run_core(core: Core, seed: int, each: int, only: Collection[str]) -> list[Score]:
     """All judges of the RTL: the quick ones first."""
-    mutants, library, hashed = drawn(core, seed, max(each, MOST))
+    mutants, hashed = drawn(core, seed, max(each, MOST))
     soak = program()
     fates = Fates(f"rtl_{core.name}", hash_of([soak], hashed, str(seed)))
     chosen = [mutant for mutant in first_of(mutants, each) if not only or mutant.module in only]
-    pins = rtl_judge.Pins(core, chosen, fates, soak, library, seed, _say)
+    if not core.played:
+        formal_judge.judge(core, chosen, fates, _say, formal_judge.LIMIT)
+        return scores(chosen, fates)
+    verilated = library(core)
+    pins = rtl_judge.Pins(core, chosen, fates, soak, verilated, seed, _say)
     first, second, third = rtl_judge.ROUNDS[core.name]
     pins.judge(first)
+    equivalence.judge(core, chosen, fates, _say, equivalence.MODULE)
     formal_judge.judge(core, chosen, fates, _say, formal_judge.LIMIT)
     pins.judge(second)
-    registers_judge.judge(core, chosen, fates, library, seed, _say)
+    equivalence.judge(core, chosen, fates, _say, equivalence.CORE)
     pins.judge(third)
-    equivalence.judge(core, chosen, fates, _say)
+    for name in (registers_judge.NAME, registers_judge.MORE):
+        registers_judge.judge(core, chosen, fates, verilated, seed, _say, name)
     return scores(chosen, fates)
 
 
@@ -78,7 +84,7 @@ def main() -> None:
     c: list[Score] = []
     if arguments.page:
         for core in CORES:
-            mutants, _, _ = drawn(core, arguments.seed, max(arguments.each, MOST))
+            mutants, _ = drawn(core, arguments.seed, max(arguments.each, MOST))
             rtl += scores(first_of(mutants, arguments.each), Fates(f"rtl_{core.name}", "", again=False))
         mutants_c, _ = c_source.drawn(arguments.seed, arguments.count)
         c = scores(mutants_c, Fates("c", "", again=False))
