@@ -131,6 +131,20 @@ def test_a_trigger(driver: Driver, action: TriggerAction) -> None:
     assert homed(driver) == (KEPT if action == TriggerAction.SOFT_STOP else MOVED)
 
 
+@pytest.mark.parametrize("pressed", [1, 300])
+def test_a_limit_at_the_end_of_a_probe(driver: Driver, pressed: int) -> None:
+    """Found, it stops softly: a hard limit within that stop overrides it, one at rest does not."""
+    driver.call("configure_motion", 2 * MS, 100 * MS, 0)
+    given = struct("probe", steps=[-20_000, 0, 0], speed=20_000 * Q32, acceleration=500_000 * Q32)
+    driver.call("probe", given)
+    driver.engine.run(100 * MS)
+    driver.engine.engine.set("probe", 1)
+    driver.engine.run(pressed * MS)
+    driver.engine.engine.set("limit_low", 1)
+    assert end(driver) == "OK"
+    assert homed(driver) == [pressed == 300, True, True]
+
+
 @pytest.mark.parametrize("kind", ["lines", "ramps"])
 def test_a_queue_that_runs_dry(driver: Driver, kind: str) -> None:
     """Without lines it stops dead, without ramps on its path."""

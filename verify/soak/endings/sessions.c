@@ -152,6 +152,7 @@ bool session_play(struct bench *bench, uint32_t seed, struct scene *scene)
 
 	memset(scene, 0, sizeof *scene);
 	bench_create(bench, seed);
+	bench_power_up(bench, FINE_TICK_LOG2);
 	scene->operation = (enum operation)bench_draw(bench, OPERATIONS);
 	scene->hold_clocks = scene->stop_clocks = 10u * MILLISECOND;
 	if (setjmp(bench->death) == 0)
