@@ -15,16 +15,6 @@ HERE = Path(__file__).resolve().parent / "couplings"
 
 
 @dataclass(frozen=True)
-class Bug:
-    """A line of the RTL or of the model, replaced by another one, which the proof must find."""
-
-    name: str
-    file: str
-    old: str
-    new: str
-
-
-@dataclass(frozen=True)
 class Link:
     """What a register or port is: a C expression; nothing is said of it while ``when`` is not true."""
 
@@ -56,7 +46,6 @@ class Coupling:
     free: dict[str, str]  # registers or inputs without coupling, and why
     invariants: dict[str, Link]  # hold before the clock, and are proved to hold after it
     assumptions: dict[str, dict[str, str]]  # ``that`` holds of the inputs, ``because`` of a neighbour
-    bugs: tuple[Bug, ...]
     # registers with an asynchronous reset; the clock then gives the inputs their next values
     at_once: tuple[str, ...]
     # leaves of the objects that a parameter fixes: member after member
@@ -107,7 +96,6 @@ def read_coupling(path: Path) -> Coupling:
             table.pop("free", {}),
             {name: _link(entry) for name, entry in table.pop("invariants", {}).items()},
             table.pop("assumptions", {}),
-            tuple(Bug(**bug) for bug in table.pop("bug", ())),
             tuple(table.pop("at_once", ())),
             table.pop("fixed", {}),
             tuple(table.pop("arrays", ())),

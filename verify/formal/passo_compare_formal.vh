@@ -45,11 +45,9 @@ always @(posedge clk)
     if (f_pulse && !write_pulse && f_high > width) pulse_ends : assert (!pin);
   end
 
-`ifdef INVARIANTS
 always @(posedge clk)
   if (f_started && !$past(rst)) begin
     assert (away == f_point - f_position);
     if ($past(!steps && !write_distance && !rst)) assert (one_up == (away == 32'd1) && one_down == (away == 32'hFFFFFFFF));
     if (pin) assert (f_pulse && timer == f_high && (f_high <= width || write_pulse));
   end
-`endif

@@ -86,7 +86,6 @@ always @(posedge clk) begin
   end
 end
 
-`ifdef INVARIANTS
 always @(posedge clk) begin
   if (f_line && !load_start_q && !decide_step) begin
     assert (f_e < f_m && e_minus_m == f_e - f_m);
@@ -118,4 +117,3 @@ always @(posedge clk) begin
             - {24'd0, f_steps[7:0]} * {24'd0, f_m_q[7:0]});
 `endif
 end
-`endif

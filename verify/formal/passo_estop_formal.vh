@@ -20,11 +20,9 @@ always @(posedge clk) begin
   if (f_two && stop) stops_for_a_reason : assert ($past(pressed, 2));
 end
 
-`ifdef INVARIANTS
 always @(posedge clk)
   if (f_started) begin
     if (released[0]) assert ($past(estop_n));
     if (f_two && released[1]) assert ($past(estop_n, 2) && released[0]);
     if (!f_two) assert (!released[1]);
   end
-`endif

@@ -54,7 +54,6 @@ always @(posedge clk)
     if (!f_cleared) greatest_is_kept : assert (greatest >= f_greatest);
   end
 
-`ifdef INVARIANTS
 always @(posedge clk)
   if (f_begun && f_started) begin
     assert ($signed(change) + $signed({1'b0, change_carry}) == f_change);
@@ -63,4 +62,3 @@ always @(posedge clk)
     assert (f_judged < 2 * f_off + 64'sd65536 && f_judged >= -2 * f_off - 64'sd65536);
     assert ({46'd0, magnitude} == (f_judged < 0 ? (-64'sd1 - f_judged) >>> 16 : f_judged >>> 16));
   end
-`endif
