@@ -15,7 +15,7 @@ from passo.toolchain import paths
 from tests.helpers import sanitized
 from verify.soak import defects, numbers, parts
 from verify.soak.defects import Defect
-from verify.soak.program import FLAGS, FOLDERS, build, build_endings, play_program
+from verify.soak.program import FLAGS, FOLDERS, build, play_program
 from verify.soak.report import JUDGED, MACHINE_JUDGED
 
 SEED = random_cases.seed()
@@ -64,15 +64,6 @@ def test_no_promise_is_broken_through_the_driver(program: Path) -> None:
     check(part, 60)
     for kind in ("flips", "lost clocks", "doubled clocks", "cuts", "deaths", "retries", "lines", "stops"):
         assert part.counts[kind] > 0, kind
-
-
-@pytest.mark.parametrize(("kind", "histories"), [("endings", 60), ("sessions", 20)])
-def test_no_promise_is_broken_by_an_early_end(kind: str, histories: int, tmp_path: Path) -> None:
-    """Of any operation of the driver, at any moment; by the death of its host, too."""
-    check(
-        parts.play_endings(build_endings(program=tmp_path / "endings"), kind, SEED, histories, JOBS),
-        histories,
-    )
 
 
 def test_the_soak_itself_is_sound(tmp_path: Path) -> None:
