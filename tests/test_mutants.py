@@ -10,8 +10,8 @@ from passo import random_cases
 from passo.toolchain import environment
 
 from verify.mutants import formal_judge
-from verify.mutants.c_judge import Worker
 from verify.mutants.c_equal import object_code
+from verify.mutants.c_judge import Worker
 from verify.mutants.c_mutate import DECLARED
 from verify.mutants.c_source import drawn as drawn_c
 from verify.mutants.netlist import PLAIN, Core, Mutant, drawn
@@ -80,7 +80,9 @@ def test_a_promise_kills_a_mutant() -> None:
 
 def test_a_mutant_with_the_same_object_code_is_no_fault() -> None:
     """`0 * x + y` is `y`; `x + y` is not `x - y`."""
-    text = DECLARED + "int f(int x, int y) { return (passo_at(1) ? 0 * x : 0) + (passo_at(2) ? x - y : x + y); }"
+    text = (
+        DECLARED + "int f(int x, int y) { return (passo_at(1) ? 0 * x : 0) + (passo_at(2) ? x - y : x + y); }"
+    )
     with tempfile.TemporaryDirectory() as folder:
         source = Path(folder) / "f.c"
         source.write_text(text)

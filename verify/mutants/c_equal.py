@@ -41,5 +41,5 @@ def judge(mutants: Sequence[CMutant], fates: Fates, show: Callable[[str], None],
             if object_code(source, mutant.number) == own:
                 fate.equal = "the object code is the same"
                 found += 1
-    fates.save()
+        fates.save()
     show(f"C: {found} have the object code of their source")
