@@ -87,7 +87,7 @@ def smallest(kind: str, seed: int, count: int) -> BeyondError | None:
 
 
 def adversaries(count: int = PATHS, seed: int = 1) -> Found:
-    """Measure so many paths on all cores."""
+    """Measure `count` paths on all cores."""
     found, jobs, told = Found(), {}, 0
     with progress("adversarial paths", count) as report, ProcessPoolExecutor(os.cpu_count()) as pool:
         for number in range(-(-count // BATCH)):

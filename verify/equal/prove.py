@@ -23,7 +23,7 @@ from verify.equal.c_types import (
     convert,
     truth,
 )
-from verify.equal.coupling import Coupling, Link
+from verify.equal.coupling import Coupling, Link, completed
 from verify.equal.model import CLOCK, RESET, Model
 from verify.equal.rtl import Rtl, read_rtl
 
@@ -88,6 +88,12 @@ def _coupled(
     return found
 
 
+def _completed(coupling: Coupling, rtl: Rtl, root: Path) -> Coupling:
+    """The coupling with what has the same name on both sides."""
+    names = {"inputs": rtl.inputs, "outputs": rtl.outputs, "registers": rtl.registers}
+    return completed(coupling, names, Model(coupling, root).leaves())
+
+
 def _check_names(coupling: Coupling, rtl: Rtl) -> None:
     """Every register and port of the RTL is in the coupling, and nothing else is.
 
@@ -125,7 +131,7 @@ def _example(assumed: list[Any], goals: list[Goal]) -> z3.ModelRef | None:
 
 
 def _search(assumed: list[Any], goals: list[Goal], apart: bool) -> tuple[tuple[str, ...], str]:
-    """The goals that fail, and values with which the first ones do; all at once, or one after the other."""
+    """The goals that fail, and values with which the first ones do; all together, or one after the other."""
     solver = z3.Solver()
     solver.set("timeout", TIME_LIMIT * 1000)
     solver.add(*assumed)
@@ -156,7 +162,7 @@ def _clock_goals(coupling: Coupling, rtl: Rtl, root: Path) -> tuple[list[Any], l
     assumed += [truth(before[entry["that"]]) for entry in coupling.assumptions.values()]
     if "rst" in rtl.inputs and "rst" not in coupling.inputs:
         assumed.append(z3.Not(rtl.before["rst"]))
-    if coupling.at_once:
+    if coupling.asynchronous:
         assumed += _coupled(coupling.inputs, rtl.after, after).values()
     outputs = _coupled(coupling.outputs, rtl.before, before)
     registers = _coupled(coupling.registers, rtl.after, after)
@@ -193,7 +199,7 @@ def _reset_goals(coupling: Coupling, rtl: Rtl, root: Path) -> tuple[list[Any], l
     assumed += _coupled(kept, rtl.before, before).values()
     assumed += [truth(before[link.expression]) for link in coupling.invariants.values() if link.kept]
     assumed += [truth(before[entry["that"]]) for entry in coupling.assumptions.values()]
-    if coupling.at_once:
+    if coupling.asynchronous:
         assumed += _coupled(coupling.inputs, rtl.after, after).values()
     registers = _coupled(coupling.registers, rtl.after, after)
     goals = [Goal(f"after a reset: register {name}", formula) for name, formula in registers.items()]
@@ -216,6 +222,7 @@ def prove(coupling: Coupling, root: Path) -> Outcome:
     """
     begin = time.monotonic()
     rtl = read_rtl(coupling, root / "rtl")
+    coupling = _completed(coupling, rtl, root)
     _check_names(coupling, rtl)
     bits = sum(rtl.registers[name] for name in {_named(entry)[0] for entry in coupling.registers})
     questions = _questions(coupling, rtl, root)
@@ -269,6 +276,7 @@ def fault_seen(coupling: Coupling, root: Path) -> list[str]:
         Failure: No fault breaks anything.
     """
     rtl = read_rtl(coupling, root / "rtl", with_faults=True)
+    coupling = _completed(coupling, rtl, root)
     seen = []
     for assumed, goals in _questions(coupling, rtl, root):
         example = _example(assumed, goals)

@@ -106,20 +106,20 @@ def _add_memories(
     return lines, names
 
 
-def _check_at_once(coupling: Coupling, hidden: dict[str, int], wires: dict[str, int]) -> None:
-    """All registers that do not wait for the clock are those of at_once.
+def _check_asynchronous(coupling: Coupling, hidden: dict[str, int], wires: dict[str, int]) -> None:
+    """All registers that do not wait for the clock are those of asynchronous.
 
     Raises:
         Failure: They are others.
     """
     if coupling.clocks:
         sampled = {found[1] for name in hidden if (found := SAMPLED.search(name))}
-        others = (sampled & set(wires)) ^ set(coupling.at_once)
+        others = (sampled & set(wires)) ^ set(coupling.asynchronous)
         if others:
-            raise Failure(f"{coupling.name}: at_once does not match: {', '.join(sorted(others))}")
-    elif sum(hidden.values()) != sum(wires.get(name, 0) for name in coupling.at_once):
+            raise Failure(f"{coupling.name}: asynchronous does not match: {', '.join(sorted(others))}")
+    elif sum(hidden.values()) != sum(wires.get(name, 0) for name in coupling.asynchronous):
         bits = f"{sum(hidden.values())} bits of registers"
-        raise Failure(f"{coupling.top}: {bits} have an asynchronous reset, not those of at_once")
+        raise Failure(f"{coupling.top}: {bits} have an asynchronous reset, not those of asynchronous")
 
 
 def read_rtl(coupling: Coupling, folder: Path, with_faults: bool = False) -> Rtl:
@@ -146,8 +146,8 @@ def read_rtl(coupling: Coupling, folder: Path, with_faults: bool = False) -> Rtl
         raise Failure(f"{top}: yosys lost the ports {', '.join(sorted(lost))}")
     hidden = {name: registers.pop(name) for name in list(registers) if name.startswith(HIDDEN)}
     wires = _listed(text, "wire")
-    registers |= {name: wires[name] for name in coupling.at_once if name in wires}
-    _check_at_once(coupling, hidden, {name: wires[name] for name in wires if name not in inputs})
+    registers |= {name: wires[name] for name in coupling.asynchronous if name in wires}
+    _check_asynchronous(coupling, hidden, {name: wires[name] for name in wires if name not in inputs})
     memory_lines, of_memories = _add_memories(top, text, inputs, registers)
     lines = [text]
     for moment in ("before", "after"):

@@ -3,7 +3,7 @@
 // passo_line_formal.vh, of the step counts in passo_line_queue_formal.vh.
 
 // --- A line as driven by the line counter: M substeps of A and B; the next line (an ENDLESS one: itself) is loaded
-// with the last one. A stop ends A and B at once; the release of an ENDLESS line ends it anywhere.
+// with the last one. A stop ends A and B immediately; the release of an ENDLESS line ends it anywhere.
 (* anyseq *) reg [29:0] f_m_next;
 (* anyseq *) reg f_stop;
 reg         f_stopped = 1'b0;

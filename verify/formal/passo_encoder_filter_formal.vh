@@ -21,7 +21,7 @@ always @(posedge clk) begin
   f_since <= f_pin_q != f_pin ? 9'd1 : f_since == 9'd256 ? 9'd256 : f_since + 9'd1;
   if (f_since > {1'b0, length}) f_level <= f_pin;
   if (rst) begin
-    f_since <= 9'd1;  // it begins anew
+    f_since <= 9'd1;  // it starts again
     f_level <= f_pin;
   end
 end

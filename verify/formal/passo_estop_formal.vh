@@ -11,7 +11,7 @@ always @(posedge clk) begin
 end
 
 always @(posedge clk) begin
-  if (!estop_n) pressed_at_once : assert (pressed);
+  if (!estop_n) pressed_asynchronously : assert (pressed);
   if (f_three && $past(pressed) && !pressed)
     only_cleared_when_released : assert ($past(clear || rst) && $past(estop_n) && $past(estop_n, 2) && $past(estop_n, 3));
   if (f_three && $past(clear || rst) && $past(estop_n) && $past(estop_n, 2) && $past(estop_n, 3) && estop_n)

@@ -10,7 +10,7 @@ always @(posedge clk) begin
   if (!f_started) following_reset : assume (rst);
 end
 
-// --- The sum, as it was with each of the last clocks; what is off the scale is not added to
+// --- The sum, as it was with each of the last clocks; a saturated sum is not added to
 wire signed [63:0] f_ratio = $signed({32'd0, ratio});
 wire signed [63:0] f_step = !step_made ? 64'sd0 : step_direction ? -f_ratio : f_ratio;
 wire signed [63:0] f_count = !count_made ? 64'sd0 : count_down ? -64'sd65536 : 64'sd65536;

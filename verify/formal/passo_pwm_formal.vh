@@ -32,7 +32,7 @@ always @(posedge clk)
   if (f_started && !$past(rst)) begin
     if (!fresh && pin) never_more_than_asked : assert (f_over < 28'sd0);
     if (!$past(go)) off_when_told : assert (!pin);
-    if ($past(go && fresh)) begins_at_once : assert (pin == $past(power != 16'd0));
+    if ($past(go && fresh)) begins_immediately : assert (pin == $past(power != 16'd0));
     if (pin && !$past(pin)) rises_with_a_period : assert (f_begins);
     if ($past(power == 16'd0)) zero_is_off : assert (!pin);
     if ($past(go && power == 16'hFFFF && !proportional)) full_is_on : assert (pin);

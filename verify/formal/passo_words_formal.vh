@@ -34,7 +34,7 @@ always @(posedge clk)
     f_gap                 <= 7'd127;
   end
 
-// --- What the master sees: an access is done within 128 clocks, once; an accepted word goes on unchanged and is
+// --- What the master sees: an access is done within 128 clocks, once; an accepted word is passed on unchanged and is
 // exchanged for the reply latched when the word before it had gone
 reg  [ 7:0] f_waits = 8'd0;
 reg         f_open = 1'b0;  // as the master wrote it
