@@ -104,7 +104,10 @@ def test_power_keeps_its_energy_and_raster_its_substep() -> None:
 
 @pytest.mark.parametrize(
     "name",
-    ["abort leaves steps", "a lost stop counts as sent", "power after a stop", "limit closes at rest only"],
+    [
+        *("abort leaves steps", "a lost stop counts as sent", "power after a stop"),
+        *("limit closes at rest only", "cancel steeper than the jog"),
+    ],
 )
 def test_a_defect_goes_red(name: str) -> None:
     """One at register level, one of the driver, one of a machine; `make verify` plants all."""
