@@ -286,6 +286,44 @@ def test_moves_after_a_thread_have_the_cores_clock() -> None:
     assert shafts.positions[0] == there + 7 == driver.positions()[0]
 
 
+def together(shafts: Shafts, times: int) -> None:
+    """A and B of the spindle change in the same clock."""
+    for level in range(times):
+        for pin in ("encoder_a", "encoder_b"):
+            shafts.engine.set(pin, (level % 2 == 0) << SPINDLE)
+        shafts.run(12)
+
+
+def test_an_encoder_that_makes_only_illegal_transitions() -> None:
+    """It has not moved; their number saturates."""
+    driver, shafts = machine()
+    together(shafts, 100)
+    now = reading(driver, SPINDLE)
+    assert (now.counts, now.illegal) == (0, 100)
+    together(shafts, 300)
+    now = reading(driver, SPINDLE)
+    assert (now.counts, now.illegal) == (0, 255)
+
+
+def test_a_thread_that_loses_its_phase_stops() -> None:
+    """At the first illegal transition; the driver tells."""
+    driver, shafts = machine()
+    driver.call("thread", thread(steps=[1000], counts=4000))
+    shafts.turn(SPINDLE, 400)
+    shafts.run(CLOCK_HZ // 100)
+    together(shafts, 2)
+    shafts.turn(SPINDLE, 400)
+    shafts.run(CLOCK_HZ // 100)
+    assert error_of(driver, "poll") == "FOLLOWING" and driver.snapshot().cause == Cause.FOLLOWING_ERROR
+    state = struct("thread_state")
+    driver.call("read_thread", state)
+    assert state.lost and state.illegal == 2
+    there = shafts.positions[0]
+    assert there == pytest.approx(100, abs=2)
+    shafts.turn(SPINDLE, 400)
+    assert shafts.positions[0] == there == driver.positions()[0]
+
+
 def test_an_electronic_gear() -> None:
     """Continues until it is stopped, exactly in its ratio; its end is where it is."""
     driver, shafts = machine()

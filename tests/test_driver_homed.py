@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """What stays homed after each cause of a stop, docs/machine.md; and inputs that are not known yet."""
 
+from typing import Any
+
 import pytest
 from passo.build import Parameters
 from passo.driver import Driver, Source
@@ -131,6 +133,20 @@ def test_a_trigger(driver: Driver, action: TriggerAction) -> None:
     assert homed(driver) == (KEPT if action == TriggerAction.SOFT_STOP else MOVED)
 
 
+@pytest.mark.parametrize("pressed", [1, 300])
+def test_a_limit_at_the_end_of_a_probe(driver: Driver, pressed: int) -> None:
+    """Found, it stops softly: a hard limit within that stop overrides it, one at rest does not."""
+    driver.call("configure_motion", 2 * MS, 100 * MS, 0)
+    given = struct("probe", steps=[-20_000, 0, 0], speed=20_000 * Q32, acceleration=500_000 * Q32)
+    driver.call("probe", given)
+    driver.engine.run(100 * MS)
+    driver.engine.engine.set("probe", 1)
+    driver.engine.run(pressed * MS)
+    driver.engine.engine.set("limit_low", 1)
+    assert end(driver) == "OK"
+    assert homed(driver) == [pressed == 300, True, True]
+
+
 @pytest.mark.parametrize("kind", ["lines", "ramps"])
 def test_a_queue_that_runs_dry(driver: Driver, kind: str) -> None:
     """Without lines it stops dead, without ramps on its path."""
@@ -253,3 +269,78 @@ def test_home_knows_its_switch_before_it_moves(driver: Driver, pressed: bool) ->
     driver.call("home", homes, 1)
     driver.engine.run(5 * MS)
     assert (driver.engine.counted()[1][0] > 0) == pressed
+
+
+def report(driver: Driver) -> Any:
+    now = struct("trigger_report")
+    driver.call("read_trigger", now)
+    return now
+
+
+@pytest.mark.parametrize("late", range(0, 2400, 75))
+def test_a_pulse_no_longer_than_the_filter_fires_no_trigger(driver: Driver, late: int) -> None:
+    """Also while it is being armed, whatever the clock."""
+    driver.call("configure_filter", 1000)
+    driver.engine.run(3000)
+    driver.call("arm_trigger", struct("trigger_config", source=TriggerSource.PROBE))
+    driver.engine.run(late)
+    driver.engine.engine.set("probe", 1)
+    driver.engine.run(1000)
+    driver.engine.engine.set("probe", 0)
+    driver.engine.run(4000)
+    now = report(driver)
+    assert now.armed and not now.fired
+    driver.engine.engine.set("probe", 1)
+    driver.engine.run(2100)
+    assert report(driver).fired
+
+
+@pytest.mark.parametrize("level", [0, 1])
+def test_a_trigger_armed_on_an_unknown_input(driver: Driver, level: int) -> None:
+    """It is armed when the input is known, at the level that it has; the next edge to active fires it."""
+    blind(driver)
+    driver.engine.engine.set("probe", level)
+    driver.call("arm_trigger", struct("trigger_config", source=TriggerSource.PROBE))
+    assert report(driver).arming
+    driver.engine.run(3 * LONGEST)
+    now = report(driver)
+    assert now.armed and not now.arming and not now.fired
+    for wanted in (0, 1):
+        driver.engine.engine.set("probe", wanted)
+        driver.engine.run(2 * LONGEST)
+    assert report(driver).fired
+
+
+def test_a_shorter_filter_counts_at_once(driver: Driver) -> None:
+    """Not after a period of the old one."""
+    blind(driver)
+    driver.call("configure_filter", 4)
+    driver.engine.run(100)
+    assert not readings(driver)
+
+
+def test_a_filter_changed_while_a_motion_runs(driver: Driver) -> None:
+    """It goes on; a switch stops it when it has been active for the new filter."""
+    driver.call("move_by_speed", by_speed([-20_000, 0, 0], speed=20_000))
+    driver.engine.run(50 * MS)
+    blind(driver)
+    before = driver.engine.counted()[1][0]
+    driver.engine.engine.set("limit_low", 1)
+    driver.engine.run(2 * LONGEST + MS)
+    made = before - driver.engine.counted()[1][0]
+    assert 0 < made <= 20_000 * (2 * LONGEST + MS) / CLOCK_HZ + 5
+    there = driver.engine.counted()[1]
+    assert end(driver) == "LIMIT" and driver.engine.counted()[1] == there == driver.positions()
+
+
+def test_a_polarity_written_while_a_switch_bounces(driver: Driver) -> None:
+    """Nothing begins before it rests; then it has the new meaning."""
+    driver.call("configure_filter", 40_000)
+    driver.engine.engine.set("limit_high", 1)
+    driver.engine.run(3 * MS)
+    driver.call("clear_flags")
+    driver.call("configure_inputs", 0, struct("input_config", limit_high=True, limit_high_inverted=True))
+    driver.call("move_by_speed", by_speed([100, 0, 0]))
+    assert flicker(driver, 20) == "OK" and driver.engine.counted()[1] == [0, 0, 0] and readings(driver)
+    driver.engine.engine.set("limit_high", 1)  # inactive, as it is inverted now
+    assert end(driver) == "OK" and driver.engine.counted()[1] == [100, 0, 0]

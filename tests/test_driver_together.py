@@ -94,9 +94,11 @@ def test_one_write_starts_all_on_one_clock(drivers: list[Driver], wire: Scope) -
 
 
 def test_others_wait_on(drivers: list[Driver], wire: Scope) -> None:
-    """Only the channels that were named start; the other one does with the next call."""
+    """Only the channels that were named and counted start; the other one does with the next call."""
     queue(drivers, wire)
-    assert start([drivers[2], drivers[0]]) == "OK"
+    lib = planner()
+    assert lib.passo_start_together([drivers[n].c for n in (2, 0, 1)], 2) == lib.PASSO_OK
+    assert lib.passo_waits_for_sync(drivers[1].c) and not lib.passo_waits_for_sync(drivers[0].c)
     wire.run(50 * MILLISECOND)
     early = wire.starts("running", 1)
     assert early[0] == early[2] is not None and early[1] is None

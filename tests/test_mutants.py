@@ -2,6 +2,7 @@
 """A sample of `make verify ONLY=mutants`: that judges see mutants, and that a score can be 0."""
 
 import subprocess
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,9 @@ from passo import random_cases
 from passo.toolchain import environment
 
 from verify.mutants import equivalence, formal_judge
+from verify.mutants.c_equal import object_code
 from verify.mutants.c_judge import Worker
+from verify.mutants.c_mutate import DECLARED
 from verify.mutants.c_source import drawn as drawn_c
 from verify.mutants.netlist import PLAIN, Core, Mutant, drawn
 from verify.mutants.netlist import library as verilated
@@ -91,6 +94,26 @@ def test_what_a_judge_kills_is_not_equal(sample: tuple[list[Mutant], Path]) -> N
     for mutant in some:
         if mutant.number in found:
             assert not equivalence.equal(problems[mutant.module], mutant.number, 60), mutant.name
+
+
+def test_a_mutant_with_the_same_object_code_is_no_fault() -> None:
+    """`0 * x + y` is `y`; `x + y` is not `x - y`."""
+    text = (
+        DECLARED + "int f(int x, int y) { return (passo_at(1) ? 0 * x : 0) + (passo_at(2) ? x - y : x + y); }"
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        source = Path(folder) / "f.c"
+        source.write_text(text)
+        codes = [object_code(source, number) for number in range(3)]
+    assert codes[0] == codes[1] != codes[2]
+
+
+def test_the_names_of_mutants_are_those_of_their_functions(tmp_path: Path) -> None:
+    """No two have one name, and none has a line in it."""
+    mutants, _ = drawn_c(SEED, 2000, tmp_path, [FILE])
+    names = [mutant.name for mutant in mutants]
+    assert len(set(names)) == len(names) > 10
+    assert all(name.split()[0] == FILE and name.split()[-1].isdigit() for name in names)
 
 
 def test_the_tests_kill_mutants_in_c(tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from passo.toolchain import paths
 from tests.helpers import sanitized
 from verify.soak import defects, numbers, parts
 from verify.soak.defects import Defect
-from verify.soak.program import FLAGS, FOLDERS, build, build_endings, play_program
+from verify.soak.program import FLAGS, FOLDERS, build, play_program
 from verify.soak.report import JUDGED, MACHINE_JUDGED
 
 SEED = random_cases.seed()
@@ -66,15 +66,6 @@ def test_no_promise_is_broken_through_the_driver(program: Path) -> None:
         assert part.counts[kind] > 0, kind
 
 
-@pytest.mark.parametrize(("kind", "histories"), [("endings", 60), ("sessions", 20)])
-def test_no_promise_is_broken_by_an_early_end(kind: str, histories: int, tmp_path: Path) -> None:
-    """Of any operation of the driver, at any moment; by the death of its host, too."""
-    check(
-        parts.play_endings(build_endings(program=tmp_path / "endings"), kind, SEED, histories, JOBS),
-        histories,
-    )
-
-
 def test_the_soak_itself_is_sound(tmp_path: Path) -> None:
     """Under the sanitizers of addresses and undefined behavior."""
     folders = (paths.driver, paths.planner, paths.protocol, paths.core)
@@ -113,7 +104,10 @@ def test_power_keeps_its_energy_and_raster_its_substep() -> None:
 
 @pytest.mark.parametrize(
     "name",
-    ["abort leaves steps", "a lost stop counts as sent", "power after a stop", "limit closes at rest only"],
+    [
+        *("abort leaves steps", "a lost stop counts as sent", "power after a stop"),
+        *("limit closes at rest only", "cancel steeper than the jog"),
+    ],
 )
 def test_a_defect_goes_red(name: str) -> None:
     """One at register level, one of the driver, one of a machine; `make verify` plants all."""

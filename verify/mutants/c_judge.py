@@ -22,11 +22,12 @@ TESTS = (
     *("test_plan_shape", "test_plan_sigmoid", "test_plan_straight", "test_plan_turn", "test_plan_user"),
     *("test_path", "test_gcode", "test_gcode_arcs", "test_driver", "test_driver_encoder", "test_driver_home"),
     *("test_driver_inputs", "test_driver_outputs", "test_driver_positions", "test_driver_together"),
-    *("test_driver_units", "test_driver_goto"),
+    *("test_driver_units", "test_driver_goto", "test_driver_homed", "test_driver_sessions"),
+    *("test_driver_noise", "test_endings"),
 )
 MOST_FAIL = 2  # tests of a file that do not run on copies
-LONGEST = 6.0  # seconds of the processor: a test that takes longer is no judge here
-MOST = 15.0  # for all tests of a mutant
+LONGEST = 20.0  # seconds of the processor: a test that takes longer is no judge here
+MOST = 40.0  # for all tests of a mutant
 TEST = 0.05  # what pytest needs for each
 
 

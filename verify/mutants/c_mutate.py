@@ -97,6 +97,7 @@ class Change:
 
     file: str
     line: int
+    function: str
     kind: str
     text: str
 
@@ -129,11 +130,13 @@ class Mutator:
     source: Path
     chosen: dict[int, int] = field(default_factory=dict)  # place in `changes`: number
     changes: list[Change] = field(default_factory=list)
+    function: str = ""  # that it is in
 
     def run(self, tree: c_ast.FileAST) -> None:
         """Change the functions that the source itself defines."""
         for item in tree.ext:
             if isinstance(item, c_ast.FuncDef) and Path(item.decl.coord.file).name == self.source.name:
+                self.function = item.decl.name
                 item.body = self._visit(item.body)
 
     def _change(self, node: Any, kind: str, make: Callable[[], Any]) -> int | None:
@@ -143,7 +146,7 @@ class Mutator:
         before = _text(node)
         line = node.coord.line if node.coord else 0
         says = f"`{before}` is left out" if mutant is None else f"`{before}` becomes `{_text(mutant)}`"
-        self.changes.append(Change(self.source.name, line, kind, says))
+        self.changes.append(Change(self.source.name, line, self.function, kind, says))
         return self.chosen.get(place)
 
     def _at(self, number: int) -> c_ast.FuncCall:

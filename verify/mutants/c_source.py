@@ -4,6 +4,7 @@
 import json
 import random
 import shutil
+from collections import Counter
 from collections.abc import Collection
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -27,9 +28,10 @@ class CMutant:
     file: str
     place: int  # among all changes of the file
     line: int
+    function: str
     kind: str
+    ordinal: int  # among those of its kind in its function
     says: str
-    twin: int = 0
 
     @property
     def module(self) -> str:
@@ -39,16 +41,21 @@ class CMutant:
     @property
     def name(self) -> str:
         """The same as long as the function is."""
-        return f"{self.file} {self.says} {self.twin}"
+        return f"{self.file} {self.function} {self.kind} {self.ordinal}"
 
 
 def _headers() -> list[Path]:
     return [paths.protocol, *FOLDERS.values()]
 
 
-def _draw(source: Path, seed: int, count: int) -> list[tuple[int, Change]]:
-    """Draw changes of a file."""
-    found = list(enumerate(changes(source, _headers())))
+def _draw(source: Path, seed: int, count: int) -> list[tuple[int, int, Change]]:
+    """Draw changes of a file: their places in it, and among their kind in their function."""
+    seen: Counter[tuple[str, str]] = Counter()
+    found = []
+    for place, change in enumerate(changes(source, _headers())):
+        of = change.function, change.kind
+        found.append((place, seen[of], change))
+        seen[of] += 1
     random.Random(f"{seed}/{source.name}").shuffle(found)
     return found[:count]
 
@@ -84,10 +91,10 @@ def drawn(
                 continue
             share = max(2, round(count * lines[file] / sum(lines.values())))
             chosen: dict[int, int] = {}
-            for place, change in _draw(file, seed, share):
-                twin = sum(mutant.says == change.text and mutant.file == file.name for mutant in mutants)
+            for place, ordinal, change in _draw(file, seed, share):
                 mutant = CMutant(
-                    len(mutants) + 1, file.name, place, change.line, change.kind, change.text, twin
+                    *(len(mutants) + 1, file.name, place, change.line),
+                    *(change.function, change.kind, ordinal, change.text),
                 )
                 chosen[place] = mutant.number
                 mutants.append(mutant)

@@ -72,7 +72,7 @@ def _reasons() -> list[tuple[re.Pattern[str], str, bool]]:
 
 def _shown(mutant: Mutant | CMutant) -> str:
     if isinstance(mutant, CMutant):
-        return f"{mutant.file}:{mutant.line}: {mutant.says}"
+        return f"{mutant.name}: {mutant.says}"
     return f"{mutant.name}, {mutant.source.split(', ')[-1]}"
 
 

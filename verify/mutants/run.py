@@ -15,7 +15,7 @@ from collections.abc import Collection, Sequence
 
 from passo.console import console
 
-from verify.mutants import c_judge, c_source, equivalence, formal_judge, registers_judge, rtl_judge
+from verify.mutants import c_equal, c_judge, c_source, equivalence, formal_judge, registers_judge, rtl_judge
 from verify.mutants.fates import Fates, hash_of
 from verify.mutants.netlist import CORES, MOST, Core, drawn, first_of, library
 from verify.mutants.page import Score, scores, show_table, write
@@ -57,6 +57,7 @@ def run_c(seed: int, count: int, only: Collection[str]) -> list[Score]:
     mutants, hashed = c_source.drawn(seed, count)
     chosen = [mutant for mutant in mutants if not only or mutant.file in only]
     fates = Fates("c", hash_of(c_judge.tests(), hashed))
+    c_equal.judge(chosen, fates, _say)
     c_judge.judge(chosen, fates, _say)
     return scores(chosen, fates)
 

@@ -12,8 +12,17 @@ from pathlib import Path
 from passo.failure import BuildError
 from passo.planted import plant
 
-from verify.soak.parts import console
-from verify.soak.program import BUILD, FOLDERS, HERE, build, play_program
+from verify.soak.parts import chunks, console
+from verify.soak.program import (
+    BUILD,
+    DRIVER_KINDS,
+    FOLDERS,
+    HERE,
+    Failure,
+    build,
+    build_endings,
+    play_program,
+)
 
 
 @dataclass(frozen=True)
@@ -25,7 +34,7 @@ class Defect:
     edits: tuple[tuple[str, str, str], ...]  # file, old, new
     red: str  # regular expression
     driver: bool = False
-    kind: str = ""  # of the history of a machine, one of KINDS
+    kind: str = ""  # of the history, one of KINDS or DRIVER_KINDS
     blind: bool = False  # the rate is judged by the steps alone
     histories: int = 20_000  # within which it must be caught
 
@@ -54,6 +63,22 @@ def defects() -> list[Defect]:
     return found
 
 
+def _play(defect: Defect, root: Path, seed: int) -> list[Failure]:
+    """Build what the defect is planted in; the first failures of its histories."""
+    if defect.kind in DRIVER_KINDS:
+        program = build_endings(root, root / "program")
+        for first, count in chunks(defect.histories):
+            command = [program, defect.kind, str(seed), str(first), str(count)]
+            if failures := play_program(command, defect.name, seed)[1]:
+                return failures
+        return []
+    program = build(root, root / "program")
+    command = [program, str(seed), "0", str(defect.histories), *(["--driver"] if defect.driver else [])]
+    command += ["--blind"] if defect.blind else []
+    command += [f"--{defect.kind}"] if defect.kind else []
+    return play_program(command, defect.name, seed)[1]
+
+
 def catch(defect: Defect, seed: int) -> Catch:
     """Plant the defect in a copy of the sources; a history must fail with its pattern."""
     began = time.monotonic()
@@ -64,16 +89,12 @@ def catch(defect: Defect, seed: int) -> Catch:
     try:
         for file, old, new in defect.edits:
             plant(root / file, old, new)
-        program = build(root, root / "program")
+        failures = _play(defect, root, seed)
     except (ValueError, BuildError) as error:
         return Catch(defect, False, -1, time.monotonic() - began, f"not planted: {error}")
-    command = [program, str(seed), "0", str(defect.histories), *(["--driver"] if defect.driver else [])]
-    command += ["--blind"] if defect.blind else []
-    command += [f"--{defect.kind}"] if defect.kind else []
-    counts, failures = play_program(command, defect.name, seed)
     seconds = time.monotonic() - began
     if not failures:
-        return Catch(defect, False, -1, seconds, f"not caught in {counts['histories']:,} histories")
+        return Catch(defect, False, -1, seconds, f"not caught in {defect.histories:,} histories")
     failure = failures[0]
     good = re.search(defect.red, failure.text) is not None
     says = failure.text if good else f"red, but not for this: {failure.text}"

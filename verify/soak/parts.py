@@ -76,7 +76,7 @@ def _all(part: Part, wanted: int, work: Iterable[Work], jobs: int) -> Part:
     return part
 
 
-def _chunks(histories: int) -> Iterator[tuple[int, int]]:
+def chunks(histories: int) -> Iterator[tuple[int, int]]:
     """First history and number of each chunk."""
     return ((first, min(CHUNK, histories - first)) for first in range(0, histories, CHUNK))
 
@@ -89,7 +89,7 @@ def play_model(program: Path, seed: int, histories: int, jobs: int, name: str = 
         command = [program, str(seed), str(first), str(count), "--keep-on", *kind]
         return lambda: play_program(command, name, seed)
 
-    return _all(Part(name), histories, (task(*chunk) for chunk in _chunks(histories)), jobs)
+    return _all(Part(name), histories, (task(*chunk) for chunk in chunks(histories)), jobs)
 
 
 def play_driver(program: Path, seed: int, histories: int, jobs: int, library: Path | None = None) -> Part:
@@ -101,7 +101,7 @@ def play_driver(program: Path, seed: int, histories: int, jobs: int, library: Pa
         command = [program, str(seed), str(first), str(count), "--driver", "--keep-on", *more]
         return lambda: play_program(command, name, seed)
 
-    return _all(Part(name), histories, (task(*chunk) for chunk in _chunks(histories)), jobs)
+    return _all(Part(name), histories, (task(*chunk) for chunk in chunks(histories)), jobs)
 
 
 def play_endings(program: Path, kind: str, seed: int, histories: int, jobs: int) -> Part:
@@ -111,7 +111,7 @@ def play_endings(program: Path, kind: str, seed: int, histories: int, jobs: int)
         command = [program, kind, str(seed), str(first), str(count)]
         return lambda: play_program(command, kind, seed)
 
-    return _all(Part(kind), histories, (task(*chunk) for chunk in _chunks(histories)), jobs)
+    return _all(Part(kind), histories, (task(*chunk) for chunk in chunks(histories)), jobs)
 
 
 def play_machine_on_verilator(program: Path, seed: int, histories: int, jobs: int) -> Part:
@@ -122,7 +122,7 @@ def play_machine_on_verilator(program: Path, seed: int, histories: int, jobs: in
         command = [program, str(seed), str(first), str(count), "--machine", "--keep-on", "--rtl", library]
         return lambda: play_program(command, name, seed)
 
-    return _all(Part(name), histories, (task(*chunk) for chunk in _chunks(histories)), jobs)
+    return _all(Part(name), histories, (task(*chunk) for chunk in chunks(histories)), jobs)
 
 
 def play_verilator(program: Path, seed: int, histories: int, jobs: int) -> Part:
@@ -136,7 +136,7 @@ def play_verilator(program: Path, seed: int, histories: int, jobs: int) -> Part:
     share = -(-histories // len(SETS))
     work = (
         task(number, first * len(SETS) + number, count)
-        for first, count in _chunks(share)
+        for first, count in chunks(share)
         for number in range(len(SETS))
     )
     return _all(Part("verilator"), share * len(SETS), work, jobs)

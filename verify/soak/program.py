@@ -73,15 +73,17 @@ def build_endings(root: Path = paths.root, program: Path = BUILD / "endings") ->
     """Build the program of DRIVER_KINDS, with planner and driver of the sources under root."""
     here = HERE / "endings"
     folders = (root / "stm32_bridge/driver", root / "c_model/planner", paths.protocol)
-    flags = [*FLAGS, *includes(*folders, here, paths.core, paths.engine)]
     libraries = [model_library()]
     files = sources(here)
     if root == paths.root:
+        folders = (paths.driver, paths.planner, paths.protocol)
         libraries.append(planner_library())
     else:
         files += sources(*folders)
+    known = (*folders, here, paths.core, paths.engine)
     linked = [*map(str, libraries), *(f"-Wl,-rpath,{library.parent}" for library in libraries)]
-    return compile_to(program, *flags, *files, *linked, "-lm")
+    inputs = [*files, *libraries, *headers(*known)]
+    return kept(program, inputs, FLAGS, *includes(*known), *files, *linked, "-lm")
 
 
 playing: set[subprocess.Popen] = set()  # killed when this program ends

@@ -15,14 +15,13 @@
 #define FRAME_MARGIN 100u
 #define COUNT_CLOCKS 8u
 
-static const struct passo_engine_config config = {.core = {.channels = 1,
-						      .axes = AXES,
-						      .tick_log2 = 7,
-						      .line_queue_log2 = 5,
-						      .ramp_queue_log2 = 5,
-						      .inputs = 1,
-						      .encoders = 1,
-						      .outputs = 1},
+static const struct passo_engine_config machine = {.core = {.channels = 1,
+						       .axes = AXES,
+						       .line_queue_log2 = 5,
+						       .ramp_queue_log2 = 5,
+						       .inputs = 1,
+						       .encoders = 1,
+						       .outputs = 1},
     .clock_hz = CLOCK_HZ,
     .spi_half_period = HALF_PERIOD};
 
@@ -159,6 +158,15 @@ void bench_create(struct bench *bench, uint32_t seed)
 {
 	memset(bench, 0, sizeof *bench);
 	bench->random = seed * 2654435761u + 1u;
+}
+
+void bench_power_up(struct bench *bench, uint8_t tick_log2)
+{
+	struct passo_engine_config config = machine;
+
+	config.core.tick_log2 = tick_log2;
+	for (unsigned a = 0; a < AXES; a++)
+		bench->axis[a].tick = (double)(UINT32_C(1) << tick_log2);
 	bench->engine = passo_engine_create(&config);
 	if (!bench->engine)
 		abort();

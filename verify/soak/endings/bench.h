@@ -17,7 +17,9 @@
 #define MICROSECOND (CLOCK_HZ / 1000000u)
 #define MILLISECOND (CLOCK_HZ / 1000u)
 #define AXES 3u
-#define SPINDLE 2u /* the axis of the encoder of a thread */
+#define FINE_TICK_LOG2 7u
+#define COARSE_TICK_LOG2 13u /* a millisecond: what a change of ramps does not plan ahead is many steps */
+#define SPINDLE 2u           /* the axis of the encoder of a thread */
 
 struct bench {
 	struct passo_engine *engine;
@@ -48,6 +50,8 @@ void bench_blame(struct bench *bench, const char *what, long a, long b);
 void bench_must(struct bench *bench, const char *what, enum passo_error error);
 
 void bench_create(struct bench *bench, uint32_t seed);
+/* The core begins; a tick has 2^tick_log2 clocks. */
+void bench_power_up(struct bench *bench, uint8_t tick_log2);
 void bench_destroy(struct bench *bench);
 /* Opens the core as a host that has just started. */
 enum passo_error bench_open(struct bench *bench);

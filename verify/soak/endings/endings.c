@@ -365,6 +365,16 @@ static bool keeps_home(const struct scene *scene)
 	    && !(scene->ending == END_SOFT_LIMIT && several);
 }
 
+/* A hard limit, pressed while a probe or home that has found may still be stopping softly, overrides that
+ * stop: "What stays homed" of docs/machine.md. At rest it does nothing. */
+static bool may_override(const struct bench *bench, const struct scene *scene)
+{
+	const struct pulses *pulses = &bench->axis[0];
+
+	return scene->ending == END_LIMIT && is_task(scene->operation) && pulses->count != 0u
+	    && scene->ended < pulses->clock[pulses->count - 1u] + scene->stop_clocks + SETTLED;
+}
+
 /* The motion was over before it was stopped. */
 static bool is_there(const struct bench *bench, const struct scene *scene)
 {
@@ -399,7 +409,8 @@ static void judge_state(
 		bench_blame(bench, "is not stopped", now.state, 0);
 	if (!stopped && now.state != PASSO_STATE_IDLE)
 		bench_blame(bench, "is not idle", now.state, 0);
-	if ((keeps_home(scene) || !stopped) && scene->operation != OP_HOME && !passo_is_homed(passo, 0))
+	if ((keeps_home(scene) || (!stopped && !may_override(bench, scene))) && scene->operation != OP_HOME
+	    && !passo_is_homed(passo, 0))
 		bench_blame(bench, "forgets its home", 0, 0);
 	if (!keeps_home(scene) && stopped && moved && !is_there(bench, scene) && passo_is_homed(passo, 0))
 		bench_blame(
@@ -450,10 +461,12 @@ static void play(struct bench *bench, struct scene *scene)
 	const unsigned compares = bench->compares;
 	bench_must(bench, operation_name(scene->operation), operation_begin(bench, scene));
 	pass(bench, scene, some_moment(bench, scene));
-	bench->late = lateness[bench_draw(bench, 8)];
-	bench->in_time = bench->late == 0u && bench_draw(bench, 2) != 0u ? MILLISECOND : 0u;
+	bench->late = scene->coarse ? 0u : lateness[bench_draw(bench, 8)];
+	bench->in_time =
+	    scene->coarse || (bench->late == 0u && bench_draw(bench, 2) != 0u) ? MILLISECOND : 0u;
 	const size_t before = bench->axis[0].count;
 	const bool moving = passo_is_moving(&bench->passo);
+	scene->ended = bench_clock(bench);
 	const enum passo_error wanted = end(bench, scene, &stopped);
 	bench->late = bench->in_time = 0;
 	if (bench->fault)
@@ -486,6 +499,8 @@ bool ending_play(
 		scene->ending = ending < ENDINGS ? ending : (enum ending)bench_draw(bench, ENDINGS);
 	} while (
 	    !is_possible(scene->operation, scene->ending) && (operation == OPERATIONS || ending == ENDINGS));
+	scene->coarse = operation_is_jog(scene->operation) && bench_draw(bench, 3) != 0u;
+	bench_power_up(bench, scene->coarse ? COARSE_TICK_LOG2 : FINE_TICK_LOG2);
 	scene->hold_clocks = (uint64_t)(bench_between(bench, 0.002, 0.05) * CLOCK_HZ);
 	scene->stop_clocks = (uint64_t)(bench_between(bench, 0.002, 0.05) * CLOCK_HZ);
 	bench_must(bench, "open", bench_open(bench));

@@ -49,7 +49,9 @@ struct scene {
 	int32_t low[AXES], high[AXES]; /* between which it may go */
 	double seconds;                /* how long it takes, about */
 	uint64_t hold_clocks, stop_clocks;
-	bool lines; /* both axes go in proportion */
+	bool lines;     /* both axes go in proportion */
+	bool coarse;    /* COARSE_TICK_LOG2, and changes arrive as late as they may */
+	uint64_t ended; /* clock */
 };
 
 const char *operation_name(enum operation operation);

@@ -4,7 +4,6 @@
 #include <math.h>
 
 #define SPANS 8u /* 1, 2, 4 ... steps are compared with as many after them */
-#define TICK_CLOCKS 128.0
 
 void pulses_begin(struct pulses *pulses)
 {
@@ -54,7 +53,7 @@ double pulses_slope(const struct pulses *pulses, double clock_hz, double limit, 
 			const double w = (double)span / seconds(pulses, j, k, clock_hz);
 			const double clock =
 			    (scaled ? (v + w) * top : v * v + w * w) / (double)span / clock_hz;
-			const double excess = fabs(w - v) - clock - 2 * limit * TICK_CLOCKS / clock_hz;
+			const double excess = fabs(w - v) - clock - 2 * limit * pulses->tick / clock_hz;
 			most = fmax(most, excess / (limit * seconds(pulses, i, k, clock_hz) / 2));
 		}
 	}
@@ -63,7 +62,7 @@ double pulses_slope(const struct pulses *pulses, double clock_hz, double limit, 
 
 bool pulses_jump(const struct pulses *pulses, double clock_hz, double limit, bool ends)
 {
-	const double most = 1.75 * sqrt(limit) + 2 * limit * TICK_CLOCKS / clock_hz;
+	const double most = 1.75 * sqrt(limit) + 2 * limit * pulses->tick / clock_hz;
 
 	for (size_t i = 0; i + 1u < pulses->count; i++) {
 		const bool begins = i == 0u || pulses->way[i - 1u] != pulses->way[i];

@@ -16,6 +16,7 @@ struct pulses {
 	size_t count;
 	int32_t position;
 	int32_t lowest, highest; /* since pulses_begin() */
+	double tick;             /* of the core, clocks: its speed changes once in a tick */
 };
 
 /* Forgets the steps, not the position. */
