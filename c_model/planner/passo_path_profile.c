@@ -112,7 +112,8 @@ unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index,
 	const uint64_t passed = ((uint64_t)passo_path_item(path, index)->substeps << 32) - left;
 	const uint64_t end = passo_path_end_square(path, index), slope = passo_path_item(path, index)->slope;
 	const uint64_t behind = passo_path_smaller(passo_path_flat(path, index + 1, index, end), left);
-	uint64_t before = passo_path_flat(path, index, index, square);
+	const uint64_t corner = passed > 0 ? passo_path_passing(path, square) : square;
+	uint64_t before = passo_path_flat(path, index, index, corner);
 
 	before = passo_path_smaller(before > passed ? before - passed : 0, left - behind);
 	unsigned count = put(parts, 0, PASSO_PATH_FLAT, before, square, slope);

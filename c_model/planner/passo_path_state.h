@@ -134,6 +134,9 @@ struct passo_path_planner {
 	/* where the ramps end */
 	int64_t offset;    /* Q31.32 substeps into item `planned` */
 	uint64_t velocity; /* UQ0.48 substeps per clock */
+#ifndef PASSO_WITHOUT_ROUNDING
+	uint64_t passing; /* the square at which they pass the start of item `planned` */
+#endif
 	bool at_rest;
 	bool started;    /* the dwell before the item is over */
 	bool jump, last; /* a ramp to 0 in no time is due; it ends the motion */
