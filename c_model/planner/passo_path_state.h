@@ -74,6 +74,7 @@ struct passo_path_item {
 	uint32_t turn;   /* substeps on either side over which a lone corner at its start may be rounded */
 	uint16_t lost;   /* UQ1.15: what its axis has of its acceleration before and behind it, in all */
 	uint16_t needed; /* UQ1.15: what the rounding needs of that axis at the square `bend` */
+	bool valley;     /* it has that where the path comes down to the corner and speeds up behind it */
 #endif
 #ifndef PASSO_LINEAR_PATHS
 	uint8_t eased; /* in a curve: quarters of the slope that are for the way across */
