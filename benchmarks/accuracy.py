@@ -174,7 +174,7 @@ def main() -> None:
     """Parse the command line and run."""
     parser = argparse.ArgumentParser(prog="benchmarks.accuracy", description=__doc__.splitlines()[0])
     parser.add_argument("--cases", type=int, default=CASES, help="random moves of each method")
-    parser.add_argument("--seed", type=int, default=SEED, help="of the random moves")
+    parser.add_argument("--seed", type=int, default=SEED, help="seed of the random moves")
     arguments = parser.parse_args()
     accuracy(arguments.cases, arguments.seed)
 

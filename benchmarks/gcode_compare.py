@@ -54,7 +54,7 @@ def main() -> int:
         found = verdict(ours, play_rs274(program))
         counts["lines"] += len(program)
         counts["motions"] += len(ours.motions)
-        counts["arcs"] += sum(motion.centre is not None for motion in ours.motions)
+        counts["arcs"] += sum(motion.center is not None for motion in ours.motions)
         counts["refused"] += ours.refused > 0
         if found:
             counts["different"] += 1

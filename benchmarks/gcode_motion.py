@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a program of G-code does, in mm and machine coordinates, whoever has read it."""
+"""The motions of a G-code program, in mm and machine coordinates, from any interpreter."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -31,7 +31,7 @@ class Motion:
     label: int  # of its line, from 1 on
     end: tuple[float, ...] = ()
     feed: float = 0  # mm/min; 0: rapid
-    centre: tuple[float, float] | None = None  # of an arc, in its plane
+    center: tuple[float, float] | None = None  # of an arc, in its plane
     plane: tuple[int, int, int] = PLANES["XY"]
     clockwise: bool = False
     dwell: float | None = None  # s
@@ -58,7 +58,7 @@ def moving(motions: Sequence[Motion]) -> Iterator[Motion]:
     """Without lines that go nowhere: rs274 calls one for a G1 without axis words."""
     at = (0.0, 0.0, 0.0)
     for motion in motions:
-        if motion.dwell is not None or motion.centre is not None or math.dist(motion.end, at) > NOWHERE:
+        if motion.dwell is not None or motion.center is not None or math.dist(motion.end, at) > NOWHERE:
             yield motion
         at = motion.end or at
 
@@ -69,7 +69,7 @@ def difference(a: Motion, b: Motion) -> str:
     if (
         a.label != b.label
         or (a.dwell is None) != (b.dwell is None)
-        or (a.centre is None) != (b.centre is None)
+        or (a.center is None) != (b.center is None)
     ):
         return "kind"
     if a.outputs.differs(b.outputs):
@@ -82,9 +82,9 @@ def difference(a: Motion, b: Motion) -> str:
         return "target"
     if (a.feed == 0) != (b.feed == 0) or abs(a.feed - b.feed) > near + 1e-4 * a.feed:
         return "feed"
-    if a.centre is not None and b.centre is not None:
+    if a.center is not None and b.center is not None:
         if (a.plane, a.clockwise) != (b.plane, b.clockwise):
             return "way round"
-        if math.dist(a.centre, b.centre) > near:
-            return "centre"
+        if math.dist(a.center, b.center) > near:
+            return "center"
     return ""

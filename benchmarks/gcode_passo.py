@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from passo.gcode import NANOMETRES, Gcode, GcodeError, GcodeSettings
+from passo.gcode import NANOMETERS, Gcode, GcodeError, GcodeSettings
 from passo.native import planner
 
 from benchmarks.gcode_motion import PLANES, Motion, Outputs, Played, labelled
@@ -53,10 +53,10 @@ class Passo:
 
     def _motion(self, action: Any, arc: Any) -> Motion:
         feed = 0 if action.feed == (1 << 64) - 1 else action.feed / 2**32 * 60
-        end = tuple(n / NANOMETRES for n in self.gcode.position) if arc is not None else None
+        end = tuple(n / NANOMETERS for n in self.gcode.position) if arc is not None else None
         made = Motion(
             self.label,
-            end or tuple(n / NANOMETRES for n in action.target[0:3]),
+            end or tuple(n / NANOMETERS for n in action.target[0:3]),
             feed,
             outputs=_outputs(action.output),
             tolerance=self.tolerance(),
@@ -64,8 +64,8 @@ class Passo:
         if arc is None:
             return made
         plane = next(axes for axes in PLANES.values() if axes[0] == arc.plane.first)
-        centre = (arc.centre.x / NANOMETRES, arc.centre.y / NANOMETRES)
-        return replace(made, centre=centre, plane=plane, clockwise=bool(arc.clockwise))
+        center = (arc.center.x / NANOMETERS, arc.center.y / NANOMETERS)
+        return replace(made, center=center, plane=plane, clockwise=bool(arc.clockwise))
 
 
 def _outputs(word: int) -> Outputs:

@@ -6,7 +6,7 @@ import random
 import re
 from collections.abc import Callable
 
-from passo.gcode import NANOMETRES, GcodeError
+from passo.gcode import NANOMETERS, GcodeError
 from passo.native import planner
 
 from benchmarks.gcode_passo import Passo
@@ -82,7 +82,7 @@ class Programs:
         gcode = self.passo.gcode
         offset = planner().passo_gcode_offset(gcode.c, axis)
         scale = 25.4 if gcode.c.mode[UNITS] == 200 else 1
-        return (gcode.position[axis] - offset) / NANOMETRES / scale
+        return (gcode.position[axis] - offset) / NANOMETERS / scale
 
     def turn(self) -> tuple[str, list[str], list[float]]:
         """A command for an arc, the letters of its plane, and where it begins; for absolute words."""
@@ -92,7 +92,7 @@ class Programs:
         return self.rng.choice(("G2", "G3", "G02", "G03")), list(plane), start
 
     def arc(self) -> str:
-        """About a centre: any sweep, sometimes a helix, a full circle, or one that does not close."""
+        """About a center: any sweep, sometimes a helix, a full circle, or one that does not close."""
         rng = self.rng
         command, letters, start = self.turn()
         radius, begin, sweep = rng.uniform(0.5, 20), rng.uniform(0, 7), rng.uniform(0.1, 6.2)

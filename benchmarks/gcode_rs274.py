@@ -92,9 +92,9 @@ def _motions(calls: Sequence[str]) -> Iterator[Motion]:
                 axes = PLANES[plane]
                 end_of = dict(zip(axes, (numbers[0], numbers[1], numbers[5]), strict=True))
                 end = tuple(end_of[axis] * scale + origin[axis] for axis in range(3))
-                centre = tuple(numbers[2 + i] * scale + origin[axes[i]] for i in range(2))
+                center = tuple(numbers[2 + i] * scale + origin[axes[i]] for i in range(2))
                 turns = {"plane": axes, "clockwise": numbers[4] < 0}
-                yield replace(made, end=end, feed=feed, centre=centre, **turns)
+                yield replace(made, end=end, feed=feed, center=center, **turns)
             case "DWELL":
                 yield replace(made, dwell=numbers[0])
             case "SET_SPINDLE_SPEED":

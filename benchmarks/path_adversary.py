@@ -126,7 +126,7 @@ def smallest(kind: str, seed: int, count: int) -> BeyondError | None:
 
 
 def adversaries(count: int = PATHS, seed: int = 1) -> Found:
-    """Measure so many paths on all cores."""
+    """Measure `count` paths on all cores."""
     found, jobs, told, folder = Found(), {}, 0, done_in()
     folder.mkdir(parents=True, exist_ok=True)
     with progress("adversarial paths", count) as report, ProcessPoolExecutor(os.cpu_count()) as pool:

@@ -36,8 +36,8 @@ def path_elf() -> FilePath:
     return program_elf("firmware_path", SOURCE, "LEFT_OUT=-DPASSO_WITHOUT_GOTO -DPASSO_PATH_AXES_MAX=3u")
 
 
-def in_micrometres(lines: Sequence[Line]) -> list[Line]:
-    """The same path with targets in whole micrometres, as the program takes them."""
+def in_micrometers(lines: Sequence[Line]) -> list[Line]:
+    """The same path with targets in whole micrometers, as the program takes them."""
     return [(tuple(Fraction(round(mm * 1000), 1000) for mm in target), feed) for target, feed in lines]
 
 
@@ -50,8 +50,8 @@ def hash_of(lines: Sequence[Line], settings: PathSettings) -> int:
 
 
 def measure(lines: Sequence[Line], settings: PathSettings) -> FirmwareCost:
-    """Plan a path on the microcontroller; targets are rounded to micrometres, feeds to mm/s."""
-    lines = in_micrometres(lines)
+    """Plan a path on the microcontroller; targets are rounded to micrometers, feeds to mm/s."""
+    lines = in_micrometers(lines)
     machine = Machine(path_elf(), None)
     machine.run(0.05)
     symbols = machine.elf.symbols

@@ -3,7 +3,7 @@
 
 A path is made of pieces by a pen that moves and turns: each line of a piece takes the next of its sizes,
 bends and feeds, in turn. Arcs of all radii, fans of nearly collinear lines, zigzags, feeds that
-alternate, and chords of a micrometre beside lines of a metre are a few numbers each.
+alternate, and chords of a micrometer beside lines of a meter are a few numbers each.
 """
 
 import json
@@ -23,7 +23,7 @@ RAPID = 0.0  # a feed that is none
 
 @dataclass(frozen=True)
 class Piece:
-    """So many lines; angles in degrees, feeds in mm/min as in G-code."""
+    """`lines` lines; angles in degrees, feeds in mm/min as in G-code."""
 
     count: int
     sizes: tuple[float, ...]  # mm

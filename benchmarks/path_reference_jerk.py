@@ -12,7 +12,7 @@ motion the problem is linear, and all that it allows keeps the limit. So each pr
 from half of the squares without a limit of jerk on, until nothing changes.
 
 Where two lines meet, the direction changes over the rounding of the corner, as in path_rounding.py; that the
-curvature itself begins and ends at once is left out, since no planner of lines has another one.
+curvature itself begins and ends abruptly is left out, since no planner of lines has another one.
 """
 
 from collections.abc import Sequence

@@ -110,7 +110,7 @@ def search(
     known: frozenset[str] = frozenset(),
     seen: Callable[[Case, Measured], None] = lambda case, measured: None,
 ) -> BeyondError | None:
-    """Draw so many cases; the smallest that is beyond a bound of a kind that is not known yet, or None."""
+    """Draw `cases` cases; the smallest that is beyond a bound of a kind that is not known yet, or None."""
 
     @seeded(seed)
     @settings(

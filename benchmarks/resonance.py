@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a move leaves of a resonance, from the clocks of its steps: linear, cosine and shaped ramps.
+"""Residual vibration after a move, from the clocks of its steps: linear, cosine and shaped ramps.
 
 All moves have the same steps, total time and ramp time, so the same peak speed. The resonance is a mass on a
 spring with damping; each step moves the end of the spring.

@@ -57,7 +57,7 @@ uint32_t substep_clocks(const struct ramp *ramps, uint32_t ramp_count, uint32_t 
 	uint64_t start = 0;
 
 	for (const struct ramp *ramp = ramps; ramp < ramps + ramp_count; ramp++) {
-		/* a mirrored ramp runs backwards, from its end to its start */
+		/* a mirrored ramp runs backward, from its end to its start */
 		const uint64_t from = ramp->mirror ? ramp->velocity_end : start;
 		const uint64_t to = ramp->mirror ? start : ramp->velocity_end;
 		uint64_t progress = ramp->progress_step; /* du / 2, UQ0.49 */

@@ -10,10 +10,10 @@
 #define AXES 3u
 #define LOOK_AHEAD 48u
 #define BATCH 32u
-#define MICROMETRES_PER_MM 1000u
+#define MICROMETERS_PER_MM 1000u
 
 struct move {
-	int32_t target[AXES]; /* micrometres */
+	int32_t target[AXES]; /* micrometers */
 	uint32_t feed;        /* mm/s; 0: rapid */
 };
 
@@ -48,12 +48,12 @@ static void take(void)
 	}
 }
 
-static int64_t millimetres(int32_t micrometres)
+static int64_t millimetres(int32_t micrometers)
 {
-	const uint32_t size = micrometres < 0 ? 0u - (uint32_t)micrometres : (uint32_t)micrometres;
-	const uint64_t mm = (((uint64_t)size << 32) + MICROMETRES_PER_MM / 2) / MICROMETRES_PER_MM;
+	const uint32_t size = micrometers < 0 ? 0u - (uint32_t)micrometers : (uint32_t)micrometers;
+	const uint64_t mm = (((uint64_t)size << 32) + MICROMETERS_PER_MM / 2) / MICROMETERS_PER_MM;
 
-	return micrometres < 0 ? -(int64_t)mm : (int64_t)mm;
+	return micrometers < 0 ? -(int64_t)mm : (int64_t)mm;
 }
 
 void path_batch(void);

@@ -267,7 +267,7 @@ def an_access_waits_for_the_one_before(core: BusCore) -> None:
 
 @bus_test
 def reads_pass_a_stream_of_writes(core: BusCore) -> None:
-    """On a bus that has both at once: a read waits for one write at most."""
+    """On a bus that has both simultaneously: a read waits for one write at most."""
     if not isinstance(core.bus, AxiLite):
         return
     bus, writes, reads = core.bus, patience(verilator=160, icarus=20), patience(verilator=12, icarus=3)

@@ -81,7 +81,7 @@ def channels_start_on_the_same_clock(core: Core) -> None:
 
 @core_test
 def channels_do_not_disturb_each_other(core: Core) -> None:
-    """All shapes and tables at once; one channel is held or stopped, and the other continues."""
+    """All shapes and tables simultaneously; one channel is held or stopped, and the other continues."""
     core.watch(PinTiming())
     first, second = core.channel(0), core.channel(1)
     first.link.write(first.base + r.CHANNEL_RATE_SLEW, RATE_ONE)

@@ -22,7 +22,7 @@ def set_slews(channel: CoreChannel, rate_slew: int, stop_slew: int = AT_ONCE) ->
 
 @core_test
 def jog(core: Core) -> None:
-    """An ENDLESS line continues after its ramps; NOW changes the speed at once, LAST and NOW end it."""
+    """An ENDLESS line continues after its ramps; NOW changes the speed immediately, LAST and NOW end it."""
     channel = core.channel()
     checker = core.watch(PinTiming())
     channel.lines(Line(10, (10, -5, 1)[: core.axes], endless=True))
@@ -219,7 +219,7 @@ def soft_stop(core: Core) -> None:
 
 @core_test
 def soft_stop_in_a_hold_and_before_the_start(core: Core) -> None:
-    """At rate 0, in IDLE and in ARMED a soft stop stops at once."""
+    """At rate 0, in IDLE and in ARMED a soft stop acts immediately."""
     channel = core.channel()
     core.watch(PinTiming())
     set_slews(channel, AT_ONCE, 1)

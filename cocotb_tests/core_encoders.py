@@ -93,7 +93,7 @@ def a_lost_step_is_seen_within_the_limit(core: Core) -> None:
 
 @core_test
 def an_encoder_that_is_not_connected_is_a_hard_stop(core: Core) -> None:
-    """After as many steps as the limit, no step later than 9 clocks; the way back is ZERO, then CLEAR."""
+    """After as many steps as the limit, no step later than 9 clocks; recovery is ZERO, then CLEAR."""
     channel = core.channel()
     core.watch(PinTiming())
     compare_with_encoder(channel, RATIO_ONE, 20, HARD, 1)
@@ -146,7 +146,7 @@ def lines_that_flicker_count_nothing(core: Core) -> None:
 
 
 def spindle(random: Random, counts: int, clocks: int = 40) -> Iterator[tuple[int, int]]:
-    """So many counts, at a speed that wanders by 30 %."""
+    """The counts, at a speed that varies by 30 %."""
     time = 0.0
     period = float(clocks)
     for _ in range(counts):
@@ -194,7 +194,7 @@ def a_thread_has_its_pitch_and_its_phase_in_every_pass(core: Core) -> None:
 
 @core_test
 def a_spindle_that_turns_back_repeats_nothing(core: Core) -> None:
-    """The path waits until the spindle is where it was, then goes on with the same counts."""
+    """The path waits until the spindle is where it was, then continues with the same counts."""
     channel = core.channel()
     core.watch(PinTiming())
     shafts = Shafts(core, PER_TURN)
@@ -312,7 +312,7 @@ def stops_of_a_motion_that_follows(core: Core) -> None:
         core.run(1500)
         check_stopped(core, channel, cause)
         channel.clear()
-    # the axis of an encoder that is not there, and back to the ramps
+    # the axis of an encoder that does not exist, and back to the ramps
     channel.rest()
     channel.link.write(follow, follow_word(7))
     thread(channel, ONE // 3, 4, core.tick)
@@ -344,7 +344,7 @@ def a_lost_phase_is_a_stop(core: Core) -> None:
 
 @core_test
 def resets_at_any_time(core: Core) -> None:
-    """Shafts that turn through resets: the counts begin anew, with what follows."""
+    """Shafts that turn through resets: the counts start again, and so does what follows them."""
     channel = core.channel()
     core.watch(PinTiming())
     random = rng("core, encoder resets")

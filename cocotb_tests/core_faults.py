@@ -145,7 +145,7 @@ def step_overrun(core: Core) -> None:
 
 
 @core_test
-def every_axis_can_overrun_at_once(core: Core) -> None:
+def every_axis_can_overrun_simultaneously(core: Core) -> None:
     """At velocity 1/2 with slow pins several steps are lost before the motion stops; all are counted."""
     channel = core.channel()
     timing = PinTiming(3, 2, 1, 1)

@@ -227,7 +227,7 @@ def the_trigger_ends_an_endless_line(core: Core) -> None:
 
 @core_test
 def e_stop_takes_the_enables_away_and_stays(core: Core) -> None:
-    """At once; it must be released and cleared, then enabled again."""
+    """Immediately; it must be released and cleared, then enabled again."""
     core.channel().pins(PinTiming())
     channel = jog(core)
     pressed = core.clock

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A core with all its parts: what inputs, encoders and outputs do to each other."""
+"""A core with all its parts: how inputs, encoders and outputs interact."""
 
 from collections.abc import Iterator
 from contextlib import suppress
@@ -128,7 +128,7 @@ def the_index_of_an_encoder_latches_positions(core: Core) -> None:
 
 @core_test
 def a_motion_that_waits_for_its_encoder_has_no_power(core: Core) -> None:
-    """While the spindle turns there are steps and power; while it stands neither. The watchdog stops it."""
+    """While the spindle turns there are steps and power; when it stops, neither. The watchdog stops it."""
     channel = core.channel()
     shafts = Shafts(core)
     core.watch(PinTiming())

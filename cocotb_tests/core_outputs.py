@@ -152,7 +152,7 @@ def power_is_off_with_every_stop_on_its_clock(core: Core) -> None:
 
 @core_test
 def power_is_off_in_a_hold(core: Core) -> None:
-    """In both modes, until the motion goes on."""
+    """In both modes, until the motion continues."""
     channel = begin(core)
     for proportional in (False, True):
         since = core.clock
@@ -340,7 +340,7 @@ def bad_settings_are_refused(core: Core) -> None:
 
 @core_test
 def levels_are_set_at_rest(core: Core) -> None:
-    """At once; a line then changes them; a reset clears them."""
+    """Immediately; a line then changes them; a reset clears them."""
     channel = begin(core)
     set_output(channel, "output_levels", 0xA5)
     core.run(10)

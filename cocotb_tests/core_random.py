@@ -59,7 +59,7 @@ class Axes:
 
     channel: CoreChannel
     timings: list[PinTiming]
-    velocity: int  # the pins can follow so many substeps per clock
+    velocity: int  # substeps per clock that the pins can follow
     pending: list[Motion] = field(default_factory=list)
     up: list[int] = field(default_factory=list)
     down: list[int] = field(default_factory=list)

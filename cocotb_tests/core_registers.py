@@ -10,7 +10,7 @@ from cocotb_tests.helpers.core_bench import ONE, V_MAX, Core, CoreChannel, Line,
 from cocotb_tests.helpers.core_expected import due
 from cocotb_tests.helpers.core_moves import check_stopped
 
-LOW_BITS = 0x07FF  # of a slew: it takes so many ticks that the rate can be read on its way
+LOW_BITS = 0x07FF  # of a slew: it takes enough ticks for a read of the rate meanwhile
 HIGH_BITS = 0xF800  # two ticks, seen in the pulses
 
 

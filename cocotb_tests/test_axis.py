@@ -137,7 +137,7 @@ class Axis:
         return cls(dut, await prepare(dut, timing), timing)
 
     async def set_timing(self, timing: PinTiming) -> None:
-        """Change the settings while the axis stands."""
+        """Change the settings while the axis is idle."""
         self.timing = timing
         await write(self.dut, self.clocks, timing)
         self.checker.set_timing(0, timing)
@@ -266,7 +266,7 @@ async def the_fifth_waiting_step_is_an_overrun(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def dir_follows_the_line_while_nothing_waits(dut: HierarchyObject) -> None:
-    """DIR follows a new line at once, so its first step is not late; a queued step goes first."""
+    """DIR follows a new line immediately, so its first step is not late; a queued step goes first."""
     timing = PinTiming(high=6, low=4, setup=20, hold=10)
     axis = await Axis.begin(dut, timing)
     turned = Recorder(axis.clocks, dut.dir_pin)
@@ -410,7 +410,7 @@ async def a_change_of_polarity_is_a_change_of_dir(
             await axis.request([(written + at, 1)])
             await axis.clocks.wait(60)
             (step, _), _ = made.changes
-            # STEP goes to its new level at once, if that is another one
+            # STEP takes its new level immediately, if it differs
             assert len([clock for clock, _ in pin.changes if clock < step]) <= 1
             # both pins have followed three clocks after the strobe at the latest
             busy = max(1, after.low if not (after.both_edges and steps % 2) else after.high)

@@ -33,7 +33,7 @@ MODULES = {
     "core_faults": ONE_CHANNEL,  # underruns and overruns
     "core_link": ONE_CHANNEL,  # duplicates, frames cut short, noise, reads, tables
     "core_refusals": TWO_CHANNELS,  # every reason to refuse a frame
-    "core_channels": TWO_CHANNELS,  # two channels at once
+    "core_channels": TWO_CHANNELS,  # both channels simultaneously
     "core_registers": ONE_CHANNEL,  # settings and states in all their bits
     "core_inputs": WITH_INPUTS,  # limits, alarms, trigger, e-stop, watchdog
     "core_encoders": WITH_ENCODERS,  # following error, threading

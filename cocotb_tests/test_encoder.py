@@ -104,7 +104,7 @@ async def the_count_is_the_position_of_the_shaft(dut: HierarchyObject, length: i
 @cocotb.test()
 @cocotb.parametrize(length=[1, 5, 30])
 async def glitches_up_to_the_filter_never_count(dut: HierarchyObject, length: int) -> None:
-    """Pulses of up to `filter` clocks on any line, alone or all at once, while the shaft turns slowly."""
+    """Pulses of up to `filter` clocks on any line, alone or all together, while the shaft turns slowly."""
     random = rng(f"encoder, glitches, {length}")
     shaft = await Shaft.begin(dut, filter=length)
     level = {"a": 0, "b": 0, "index": 0}
@@ -157,7 +157,7 @@ async def a_line_that_flickers_on_every_clock(dut: HierarchyObject) -> None:
 
 
 @cocotb.test()
-async def both_lines_at_once_are_no_count(dut: HierarchyObject) -> None:
+async def both_lines_together_are_no_count(dut: HierarchyObject) -> None:
     """They are counted apart, up to 255, until cleared."""
     shaft = await Shaft.begin(dut, filter=2)
     for n in range(1, 300):

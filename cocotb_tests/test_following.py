@@ -126,7 +126,7 @@ async def an_encoder_that_is_not_connected_exceeds_the_limit(dut: HierarchyObjec
 
 @cocotb.test()
 async def off_the_scale_it_stays_until_zero(dut: HierarchyObject) -> None:
-    """An error of 2^16 counts is lost: it does not wrap, and no way back looks like none."""
+    """An error of 2^16 counts is lost: it does not wrap, and no way home looks like none."""
     servo = await Servo.begin(dut, (1 << 32) - 1, 65535)
     await servo.clock(step=1, count=-1)
     await servo.clock(step=1, count=-1)

@@ -139,7 +139,7 @@ async def a_frame_needs_room_for_all_its_lines(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def room_is_taken_when_a_frame_is_accepted(dut: HierarchyObject) -> None:
-    """For all its lines at once, before the first is written; places that are freed meanwhile count."""
+    """For all its lines together, before the first is written; entries freed meanwhile count."""
     random = rng("line queue, accepted")
     queue = await Queue.begin(dut)
     await queue.bus.push(queue.random_line(random) + queue.random_line(random))
@@ -209,7 +209,7 @@ async def flush_empties_the_queue(dut: HierarchyObject) -> None:
             await queue.clocks.wait(1)
         dut.flush.value = 1
         await queue.clocks.wait(2)
-        # a replay that was under way goes on
+        # a replay in progress continues
         await queue.bus.frame()
         await queue.bus.write(queue.random_line(random))
         dut.flush.value = 0

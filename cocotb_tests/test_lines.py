@@ -149,7 +149,7 @@ class Lines(Bench):
 
 
 def every(gap: int) -> Iterator[int]:
-    """The same number for ever."""
+    """The same number, endlessly."""
     while True:
         yield gap
 

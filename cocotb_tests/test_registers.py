@@ -60,7 +60,7 @@ class Registers(Bench):
         return random.randrange(self.channels) << 16 | bits[1] << 8 | bits[0]
 
     def takes(self, word: int) -> bool:
-        """It has bits of channels that are there only."""
+        """It has bits for existing channels only."""
         run, wait, status = word & 0xFF, word >> 8 & 0xFF, word >> 16 & 7
         return max(run, wait) >> self.channels == 0 and status < self.channels
 

@@ -140,7 +140,7 @@ async def the_rate_slews_onto_its_target_and_stays(dut: HierarchyObject) -> None
 
 
 @cocotb.test()
-async def a_slew_of_zero_counts_as_one_and_of_one_is_at_once(dut: HierarchyObject) -> None:
+async def a_slew_of_zero_counts_as_one_and_of_one_is_immediate(dut: HierarchyObject) -> None:
     """rate_slew 0 moves by 1 per slew tick; 65536 is there with the first step."""
     bench = await Bench.begin(dut, rate_target=1000, rate_slew=0)
     bench.set(moving=1, rate_target=1005)
@@ -155,7 +155,7 @@ async def a_slew_of_zero_counts_as_one_and_of_one_is_at_once(dut: HierarchyObjec
 
 @cocotb.test()
 async def a_stop_goes_to_zero_by_its_own_slew(dut: HierarchyObject) -> None:
-    """Stopping takes stop_slew and 0, whatever rate_target says; the next motion has its rate at once."""
+    """Stopping takes stop_slew and 0, whatever rate_target says; the next motion has its rate immediately."""
     bench = await Bench.begin(dut, rate_target=ONE, rate_slew=7, stop_slew=6000)
     bench.set(moving=1)
     await bench.run(50)

@@ -18,7 +18,7 @@ module passo_estop (
   output wire stop
 );
 
-  reg [1:0] released;  // synchronised: estop_n is high
+  reg [1:0] released;  // synchronized: estop_n is high
   (* async_reg = "true" *)
   reg [1:0] seen;
 

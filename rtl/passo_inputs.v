@@ -2,7 +2,7 @@
 // Inputs of a channel: levels and flags, limits and alarms, the trigger, and their registers.
 //
 // Promise: `read_data` is the addressed register one clock after `bus_read`, for one clock, else 0. `bad_value`: a
-// checked word of TRIGGER has no source or no axis that is there. `hard_stop` and `soft_stop` ask the motion to stop, each with its cause; `hard_stop` also drops the steps that wait.
+// checked word of TRIGGER names a source or an axis that the core lacks. `hard_stop` and `soft_stop` ask the motion to stop, each with its cause; `hard_stop` also drops the steps that wait.
 // `wait_known`: an input is unknown, or a trigger is being armed, so that no motion may begin.
 `resetall
 `timescale 1ns / 1ps
@@ -34,7 +34,7 @@ module passo_inputs #(
   input  wire [AXES-1:0] home,
   input  wire [AXES-1:0] alarm,
   input  wire            probe,
-  input  wire [AXES-1:0] index,           // of encoders, synchronised
+  input  wire [AXES-1:0] index,           // of encoders, synchronized
   // axes
   input  wire [AXES-1:0] waits,
   input  wire [AXES-1:0] negative,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the inputs of all channels share: the tick of the filter, e-stop, watchdog, and their registers.
+// Shared by the inputs of all channels: the tick of the filter, e-stop, watchdog, and their registers.
 //
 // Promise: `read_data` is the addressed register one clock after `bus_read`, for one clock, else 0. `tick` comes every `filter` + 1 clocks, the first time that long after a write of the filter.
 `resetall

@@ -3,8 +3,8 @@
 //
 // Promise: `read_data` is the addressed register one clock after `bus_read`, for one clock, else 0. `write_levels`,
 // `write_pulse` and `write_distance` are high in the clock after their write, with bus_data; `write_power` in the
-// first clock of a new pwm_step or power_reference. `bad_value`: a checked word of COMPARE_PULSE has an axis that is
-// not there. `select_raster`: a push to the raster queue.
+// first clock of a new pwm_step or power_reference. `bad_value`: a checked word of COMPARE_PULSE has an axis that the
+// core lacks. `select_raster`: a push to the raster queue.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none

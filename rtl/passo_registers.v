@@ -4,7 +4,7 @@
 //
 // Promise: `read_data` is the addressed register one clock after `bus_read`, for one clock, and 0 if it is none of
 // these; it is the status word at all other times. RUN changes for all channels on the same clock. `bad_value`: a
-// checked word of RUN has a channel that is not there.
+// checked word of RUN has a channel that the core lacks.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none

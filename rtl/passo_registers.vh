@@ -244,14 +244,14 @@ localparam CHANNEL_RATE_TARGET_BITS    = 17;
 localparam CHANNEL_RATE_TARGET_RESET   = 17'h10000;
 localparam CHANNEL_RATE_TARGET_DEFINED = 32'h0001FFFF;
 
-// Channel: Rate slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1.
+// Channel: Rate slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = immediately; 0 counts as 1.
 localparam CHANNEL_RATE_SLEW         = 8'h02;
 localparam CHANNEL_RATE_SLEW_LSB     = 0;
 localparam CHANNEL_RATE_SLEW_BITS    = 17;
 localparam CHANNEL_RATE_SLEW_RESET   = 17'h00400;
 localparam CHANNEL_RATE_SLEW_DEFINED = 32'h0001FFFF;
 
-// Channel: Stop slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1.
+// Channel: Stop slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = immediately; 0 counts as 1.
 localparam CHANNEL_STOP_SLEW         = 8'h03;
 localparam CHANNEL_STOP_SLEW_LSB     = 0;
 localparam CHANNEL_STOP_SLEW_BITS    = 17;
@@ -335,8 +335,8 @@ localparam CHANNEL_INPUT_FLAGS_ALARM_LSB        = 24;
 localparam CHANNEL_INPUT_FLAGS_ALARM_BITS       = 8;
 localparam CHANNEL_INPUT_FLAGS_ALARM_RESET      = 8'h00;
 
-// Channel: Clear input flags. Each bit written as 1 clears a flag of INPUT_FLAGS; bits of axes that are not
-// there do nothing.
+// Channel: Clear input flags. Each bit written as 1 clears a flag of INPUT_FLAGS; bits of axes that the
+// core lacks do nothing.
 localparam CHANNEL_INPUT_CLEAR                  = 8'h12;
 localparam CHANNEL_INPUT_CLEAR_LIMIT_LOW_LSB    = 0;
 localparam CHANNEL_INPUT_CLEAR_LIMIT_LOW_BITS   = 8;
@@ -427,7 +427,7 @@ localparam CHANNEL_RASTER_LSB     = 0;
 localparam CHANNEL_RASTER_BITS    = 32;
 localparam CHANNEL_RASTER_DEFINED = 32'hFFFFFFFF;
 
-// Channel: Output levels. Sets the digital outputs at once, until a line changes them.
+// Channel: Output levels. Sets the digital outputs immediately, until a line changes them.
 localparam CHANNEL_OUTPUT_LEVELS              = 8'h30;
 localparam CHANNEL_OUTPUT_LEVELS_LEVELS_LSB   = 0;
 localparam CHANNEL_OUTPUT_LEVELS_LEVELS_BITS  = 8;
@@ -679,7 +679,7 @@ localparam ENCODER_RATIO_BITS    = 32;
 localparam ENCODER_RATIO_RESET   = 32'h00010000;
 localparam ENCODER_RATIO_DEFINED = 32'hFFFFFFFF;
 
-// Encoder: Following error limit. Error from which on the axis is too far from its encoder.
+// Encoder: Following error limit. Following error at which the axis is exceeded.
 localparam ENCODER_LIMIT         = 3'h2;
 localparam ENCODER_LIMIT_LSB     = 0;
 localparam ENCODER_LIMIT_BITS    = 16;
@@ -753,7 +753,7 @@ localparam CAUSE_ALARM           = 4'd7;  // The alarm input of an axis became a
 localparam CAUSE_TRIGGER         = 4'd8;  // The trigger fired, and its action is a stop.
 localparam CAUSE_WATCHDOG        = 4'd9;  // No good frame came for too long while a motion ran.
 localparam CAUSE_ESTOP           = 4'd10; // The e-stop input became active.
-localparam CAUSE_FOLLOWING_ERROR = 4'd11; // An axis was too far from its encoder.
+localparam CAUSE_FOLLOWING_ERROR = 4'd11; // The following error of an axis exceeded its limit.
 
 // What fires the trigger of a channel.
 localparam TRIGGER_SOURCE_NONE       = 3'd0; // None; cannot be armed.

@@ -31,19 +31,19 @@ module passo_watchdog #(
   reg                  silent;  // stop_after units are over
   wire [          9:0] wanted = stop ? disable_after : stop_after;
   wire                 over = count == wanted;
-  wire                 bites = silent & moving & ~stop;
+  wire                 trips = silent & moving & ~stop;
 
   always @(posedge clk) begin
     fed           <= feed;
     {count, unit} <= {count, unit} + 1'b1;
     if (over && stops) silent <= 1'b1;
-    if (bites) stop <= 1'b1;
+    if (trips) stop <= 1'b1;
     if (over && stop && disables) disable_drives <= 1'b1;
     if (write) begin
       {disable_after, stop_after} <= bus_data;
       {disables, stops}           <= {bus_data[19:10] != 10'd0, bus_data[9:0] != 10'd0};
     end
-    if (fed || bites || rst) {count, unit} <= {(10 + UNIT_LOG2) {1'b0}};
+    if (fed || trips || rst) {count, unit} <= {(10 + UNIT_LOG2) {1'b0}};
     if (fed || rst) begin
       silent         <= 1'b0;
       stop           <= 1'b0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Random lines for the console over the C model: console_fuzz SEED SECONDS. Every line must get exactly one
- * answer, at once unless it is a move that waits for room; the sanitizers watch the rest. Prints how many
+ * answer, immediately unless it is a move that waits for room; the sanitizers watch the rest. Prints how many
  * lines were answered ok and with an error, and how many of them waited.
  */
 #include <stdio.h>
@@ -21,7 +21,7 @@ static const char *const WORDS[] = {"move", "turn", "rpm", "hold", "resume", "ov
     "trigger", "wait_trigger", "goto", "output", "outputs", "compare", "encoder", "encoders", "adopt",
     "thread", "bla", "steps", "profile", "total_time", "ramp_time", "start_speed", "speed", "stop_speed",
     "acceleration", "deceleration", "jerk", "method", "axis", "axes", "steps_per_turn", "rpm", "top_rpm",
-    "minimum_rpm", "backwards", "distance", "feed", "steps_per_mm", "accelerate_time", "decelerate_time",
+    "minimum_rpm", "backward", "distance", "feed", "steps_per_mm", "accelerate_time", "decelerate_time",
     "alpha", "row", "points", "percent", "step_high", "step_low", "dir_setup", "dir_hold", "both_edges",
     "steps_per_unit", "clock_hz", "hold_time", "stop_time", "flow", "need_enable", "baud", "spi_slow", "on",
     "command", "channel", "channel", "limit_low", "limit_high", "home", "alarm", "limit_soft",

@@ -141,7 +141,8 @@ static struct passo_ramp ramp_of(
 	    .progress_step = ticks == 1u ? PASSO_PROGRESS_STEP_MAX : PASSO_ONE_Q48 / ticks};
 }
 
-/* Acceleration, cruise and deceleration with a shape on every channel at once, one of them with a hold. */
+/* Acceleration, cruise and deceleration with a shape on every channel simultaneously, one of them with a
+ * hold. */
 static void move_every_channel(enum passo_shape shape)
 {
 	const unsigned channels = core.parameters.channels;
@@ -167,7 +168,7 @@ static void move_every_channel(enum passo_shape shape)
 	rest(60000);
 	expect(
 	    write_word((uint16_t)(channel_base(0) + PASSO_CHANNEL_RATE_TARGET), 0x10000) == PASSO_VERDICT_OK,
-	    "and goes on");
+	    "and continues");
 	rest(500000);
 	for (unsigned i = 0; i < channels; i++) {
 		expect(state_of(i) % 8u == PASSO_STATE_IDLE, "the motion has ended");

@@ -125,7 +125,7 @@ static void rest(uint64_t microseconds)
 	run(&inputs, microseconds * CLOCKS_PER_MICROSECOND);
 }
 
-/* One chip select of so many bits. */
+/* One chip select of `bits` bits. */
 static void exchange(const uint32_t *send, uint32_t *receive, size_t bits)
 {
 	struct passo_inputs inputs = {.spi_cs_n = bits == 0u};

@@ -14,7 +14,7 @@
 
 #define ITEMS 16u
 #define TEXT 200u
-#define CHORDS_MAX 2000u /* of an arc that are looked at */
+#define CHORDS_MAX 2000u /* of an arc that are checked */
 
 static void must(bool holds, const char *what, const char *text)
 {

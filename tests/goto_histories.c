@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  * Random histories of passo_goto() on the C model: changes at random times by a host that is late, that is
- * interrupted within a call, or that falls silent for ever, between two words of a frame too.
+ * interrupted within a call, or that sends nothing anymore, between two words of a frame too.
  *
  * The judge sees the pulses and the calls, nothing of planner, driver or model: between two calls the axis
  * stays between where it was and the target, or where it can just come to rest; three steps never show more
- * acceleration than allowed; it ends on the target, or rests on the way without a fault if the host is
- * silent. Prints the number of good histories and the worst that was seen.
+ * acceleration than allowed; it ends on the target, or rests on the way without a fault if no frame
+ * comes. Prints the number of good histories and the worst that was seen.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -43,9 +43,9 @@ static struct {
 	double limit;                /* steps/s^2, with what hold and override add */
 	double late, top;
 	int32_t pins_wait;   /* steps that may wait for the pins */
-	unsigned interrupts; /* one frame in so many waits; 0: none */
+	unsigned interrupts; /* one in this number of frames waits; 0: none */
 	bool covered;        /* none of them is longer than late_clocks */
-	unsigned cut;        /* frames until the host dies in one of them; 0: never */
+	unsigned cut;        /* frames until the host fails in one of them; 0: never */
 	jmp_buf death;
 } world;
 
@@ -133,7 +133,7 @@ static double now(void)
 
 /* -------------------------------------------------------------------------------------------- judge ---- */
 
-/* What the axis needs to come to rest from a speed that goes on rising until the core has the command. */
+/* What the axis needs to come to rest from a speed that keeps rising until the core has the command. */
 static int32_t way_to_rest(double speed, double acceleration)
 {
 	const double high = fmin(speed + acceleration * world.late, world.top * 1.001);

@@ -163,7 +163,7 @@ module passo_bench;
     words[2] = STEPS_0;
     words[3] = STEPS_1;
     send(OPERATION_PUSH, of_channel(CHANNEL_LINE), 8'd4);
-    // to the velocity at once, along, to 0 at once
+    // to the velocity immediately, along, to 0 immediately
     words[0]  = VELOCITY_HIGH;
     words[1]  = 32'd0;
     words[2]  = 32'd0;

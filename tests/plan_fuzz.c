@@ -135,7 +135,7 @@ static void check_line(const struct passo_plan *plan, uint8_t axes, bool endless
 	uint32_t longest = 0;
 	for (unsigned axis = 0; axis < PASSO_AXES_MAX; axis++) {
 		expect(line->steps[axis] <= line->substeps, "an axis has more steps than substeps");
-		expect(axis < axes || line->steps[axis] == 0, "an axis that is not there moves");
+		expect(axis < axes || line->steps[axis] == 0, "an axis that does not exist moves");
 		longest = longest > line->steps[axis] ? longest : line->steps[axis];
 	}
 	expect(longest > 0 && line->substeps > 0, "the line is empty");
@@ -252,7 +252,7 @@ static struct passo_turning some_turning(void)
 	struct passo_turning turning = {
 	    .axis = (uint8_t)below(9),
 	    .steps_per_turn = (uint32_t)sized(16),
-	    .backwards = below(2) > 0,
+	    .backward = below(2) > 0,
 	    .top_rpm = quantity(),
 	    .acceleration = quantity(),
 	};
@@ -347,7 +347,7 @@ static struct passo_course some_course(void)
 {
 	struct passo_course course = {
 	    .axis = (uint8_t)below(below(20) > 0 ? PASSO_AXES_MAX : 256),
-	    .backwards = below(2) > 0,
+	    .backward = below(2) > 0,
 	    .top_speed = quantity(),
 	    .acceleration = quantity(),
 	};

@@ -102,7 +102,7 @@ def test_turn_is_3200_updates_and_1600_pulses() -> None:
 
 
 def test_square_roots_are_truncated() -> None:
-    """533, then sqrt(533^2 + 80000) = 603.4, then sqrt(603^2 + 80000) = 666.03; at 40000 it stands still."""
+    """533, then sqrt(533^2 + 80000) = 603.4, then sqrt(603^2 + 80000) = 666.03; at 40000 it is stationary."""
     assert trapezoid.update_speeds(Trapezoid(360, 60, 10))[:3] == [533, 603, 666]
     fast = Trapezoid(3600, 900, 740)  # 39466 to 48000 updates/s in 9330 updates
     assert fast.n_acc == 9330

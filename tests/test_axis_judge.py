@@ -108,7 +108,7 @@ def test_jerk() -> None:
     ]
 
 
-def test_a_jump_is_seen_at_once() -> None:
+def test_a_jump_is_seen_immediately() -> None:
     """A speed of 10 mm/s from rest; an axis with that start-stop speed may."""
     times = np.array([0, 0.05, 0.05, 0.3, 0.3, 0.4])
     jump = integral(times + np.array([0, -1e-9, 0, 0, 1e-9, 0]), np.array([0, 0, 10, 10, 0, 0])), 0.4
@@ -152,7 +152,7 @@ def test_the_parts_of_a_curve_add_up() -> None:
 
 
 def turned_round(acceleration: float, phase: float) -> tuple[np.ndarray, np.ndarray]:
-    """Up and slower to 1 mm/s, back at once at 20 mm/s, faster, to rest; then a step takes 125 us."""
+    """Up and slower to 1 mm/s, back immediately at 20 mm/s, faster, to rest; then a step takes 125 us."""
     part = 20 / acceleration
     times = np.cumsum([0, 0.01, 21 / acceleration, 0.03 + phase, part, 1e-9, part, 0.03, 2 * part, 0.05])
     train = integral(times, np.array([0, 0, 21, 21, 1, -20, -40, -40, 0, 0]))

@@ -86,7 +86,7 @@ def test_every_port_of_a_part_has_a_pin_of_its_own(board: Board, parts: tuple[st
 
 
 def test_parts_are_chosen_by_name(made_up: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Unknown ones, those without pins, too few pins and too many are told."""
+    """Unknown ones, those without pins, too few pins and too many are reported."""
     assert synth.main(["--board", "made_up", "--parts", "inputs,lasers"]) == 2
     assert "unknown part 'lasers'; must be one of inputs, encoders, outputs" in capsys.readouterr().err
     assert synth.main(["--board", "made_up", "--parts", "inputs"]) == 2
@@ -294,7 +294,7 @@ def test_boards_are_listed_and_unknown_ones_refused(capsys: pytest.CaptureFixtur
     assert "cannot generate 5000 MHz" in capsys.readouterr().err
     for axes in (0, 7):
         assert synth.main(["--board", "icebreaker", "--axes", str(axes)]) == 2
-        told = f"board 'icebreaker': axes: {axes} are wanted, and the table has pins for 6"
+        told = f"board 'icebreaker': axes: {axes} requested, but the table has pins for 6"
         assert told in capsys.readouterr().err
 
 
@@ -430,7 +430,7 @@ def test_words_of_the_file_of_pins(name: str, lines: list[str]) -> None:
 
 
 def test_relative_of_a_device(made_up: Path) -> None:
-    """An FPGA that devices.py does not have: what differs is told in the table."""
+    """An FPGA that devices.py does not have: the table lists the differences."""
     table = MADE_UP.replace('device = "up5k"\n', "").replace("[clock]", f"{RELATIVE}[clock]")
     made_up.write_text(table)
     device = board("made_up").device
@@ -492,7 +492,7 @@ capacity = 7680
 def test_bad_table_is_refused(
     made_up: Path, capsys: pytest.CaptureFixture[str], old: str, new: str, told: str
 ) -> None:
-    """Board, key and reason are told, also by the list of the boards."""
+    """Board, key and reason are reported, also by the list of the boards."""
     assert MADE_UP.count(old) == 1
     made_up.write_text(MADE_UP.replace(old, new))
     with pytest.raises(TableError) as error:

@@ -95,7 +95,7 @@ def shift(run: Run, edge: int, number: int, clocks: int) -> None:
 
 
 def turn(run: Run, clocks: int) -> None:
-    """Change DIR so many clocks after the last step forward, or that many before the first one back."""
+    """Change DIR that number of clocks after the last step forward, or before the first one back."""
     (row,) = np.flatnonzero(np.diff(run.pins["dir"] & 1)) + 1
     begun = run.steps(0)[0] + run.start
     run.pins["clock"][row] = begun[89] + clocks if clocks > 0 else begun[90] + clocks
@@ -331,7 +331,7 @@ def test_a_worker_that_dies_loses_nothing(client: Any, alone: Batch) -> None:
 
 
 def test_a_campaign_without_workers_ends(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It does not wait for ever for new ones."""
+    """It does not wait indefinitely for new ones."""
     from distributed import Client, LocalCluster
 
     monkeypatch.setattr(campaign, "POLL", 0.5)

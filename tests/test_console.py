@@ -96,7 +96,7 @@ def bench() -> Iterator[Bench]:
 
 
 def pulses_of(events: np.ndarray, axes: int, channel: int = 0) -> list[tuple[int, int, int]]:
-    """Clock since `running` rose, axis and direction bit of each step of a channel with so many axes."""
+    """Clock since `running` rose, axis and direction bit of each step of a channel with `axes` axes."""
     running = np.diff(events["running"].astype(int) >> channel & 1, prepend=0)
     start = int(events["clock"][running > 0][0])
     found = []
@@ -118,7 +118,7 @@ def lasted(bench: Bench) -> list[int]:
 
 
 def line_of(table: dict[str, Any]) -> str:
-    """A table of a move file as the console wants it."""
+    """A table of a move file as the console reads it."""
 
     def show(value: Any) -> str:
         return ",".join(map(show, value)) if isinstance(value, list) else str(value)
@@ -276,7 +276,7 @@ def test_a_broken_wire_answers_the_move_that_waits(bench: Bench, monkeypatch: py
 
 
 def test_a_lost_stop_answers_the_move_that_waits(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The stop is resent, and the move is refused at once."""
+    """The stop is resent, and the move is refused immediately."""
     fill(bench)
     with monkeypatch.context() as patch:
         patch.setattr(bench.engine, "transfer", lambda mosi, gap: [0] * len(mosi))
@@ -640,7 +640,7 @@ def test_turning_without_end(bench: Bench) -> None:
     """turn, rpm, rpm 0: angle and speed read back; no other move meanwhile."""
     assert bench.ask("rpm 60").startswith("error: NOT_TURNING: ")
     assert (
-        bench.ask("turn axis=1 steps_per_turn=1600 rpm=60 top_rpm=120 acceleration=20000 backwards=1") == "ok"
+        bench.ask("turn axis=1 steps_per_turn=1600 rpm=60 top_rpm=120 acceleration=20000 backward=1") == "ok"
     )
     bench.ask("run 1")
     before = float(bench.tell("angle 1600 axis=1")["angle"])
@@ -824,8 +824,8 @@ def test_table_is_checked(bench: Bench) -> None:
     assert bench.ask("table") == "error: table is missing"
     user = "move steps=10 profile=user total_time=0.01 ramp_time=0.002"
     assert bench.ask(user) == "error: table is missing"
-    assert bench.ask("table 3") == "error: row and points need each other"
-    assert bench.ask(f"table points={ZEROS}") == "error: row and points need each other"
+    assert bench.ask("table 3") == "error: row and points must be given together"
+    assert bench.ask(f"table points={ZEROS}") == "error: row and points must be given together"
     for row in range(16):
         points = ",".join(str((row * 16 + k) * 256) for k in range(16))
         assert bench.ask(f"table {row} {points}") == "ok"

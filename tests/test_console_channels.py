@@ -184,7 +184,7 @@ def test_a_table_waits_for_all_channels(bench: Bench) -> None:
 
 
 def test_motions_outlive_the_console(bench: Bench) -> None:
-    """Each channel is taken over when it is at rest; one at rest works at once."""
+    """Each channel is taken over when it is at rest; one at rest works immediately."""
     bench.ask("move steps=200,-120 profile=cosine total_time=0.3 ramp_time=0.1 channel=1")
     bench.ask(f"{LONG} channel=2")
     bench.terminal.close()

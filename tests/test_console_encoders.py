@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The console on a core with encoders: settings, readings, following error and the way back, threads."""
+"""The console on a core with encoders: settings, readings, following error and recovery, threads."""
 
 import subprocess
 import sys
@@ -200,7 +200,7 @@ def test_a_slip_and_the_way_back(bench: Bench, stop: str) -> None:
 
 
 def test_an_encoder_that_is_not_connected(bench: Bench) -> None:
-    """It stands still: the axis is stopped after the steps of the limit, and told by name."""
+    """The shaft is stationary: the axis is stopped after the steps of the limit, and reported by name."""
     assert bench.ask("encoder axis=1 counts_per_step=4 limit=20 stop=hard") == "ok"
     bench.ask(MOVE)
     bench.terminal.line("wait")
@@ -210,7 +210,7 @@ def test_an_encoder_that_is_not_connected(bench: Bench) -> None:
 
 
 def test_a_limit_that_only_shows(bench: Bench) -> None:
-    """stop=none: the motion goes on."""
+    """stop=none: the motion continues."""
     assert bench.ask("encoder axis=1 counts_per_step=4 limit=20 stop=none") == "ok"
     assert bench.ask(MOVE) == bench.ask("wait") == "ok"
     assert bench.tell("encoders")["exceeded"] == "1"

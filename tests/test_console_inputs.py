@@ -168,7 +168,7 @@ def test_jog_into_a_limit_and_back(bench: Bench) -> None:
 
 def test_jog_changes_its_speed_and_ends_when_told(bench: Bench) -> None:
     """No clear after it; contradictions are refused."""
-    assert bench.ask("jog axis=1 speed=1000 top_speed=4000 acceleration=100_000 backwards=1") == "ok"
+    assert bench.ask("jog axis=1 speed=1000 top_speed=4000 acceleration=100_000 backward=1") == "ok"
     bench.ask("run 0.1")
     assert bench.ask("jog_speed 3000") == "ok"
     bench.ask("run 0.2")
@@ -180,7 +180,7 @@ def test_jog_changes_its_speed_and_ends_when_told(bench: Bench) -> None:
     assert bench.tell("status")["state"] == "IDLE"
     assert bench.ask("jog_cancel") == "ok"
     assert bench.ask(f"{JOG} steps=0") == "error: steps must not be 0; omit it for an endless jog"
-    assert bench.ask(f"{JOG} steps=5 backwards=1") == "error: steps and backwards are mutually exclusive"
+    assert bench.ask(f"{JOG} steps=5 backward=1") == "error: steps and backward are mutually exclusive"
     assert bench.ask(f"{JOG} steps=1.5") == "error: steps must be a whole number, not '1.5'"
     assert bench.ask(f"{JOG} steps=1073741824") == "error: steps must be at most 1073741823 in magnitude"
 
@@ -293,7 +293,7 @@ def test_the_watchdog_of_a_fast_clock() -> None:
 
 
 def test_a_home_with_a_wire_that_fails(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its line is answered with the error of the link, and the console goes on."""
+    """Its line is answered with the error of the link, and the console continues."""
     transfer = bench.machine.transfer
     bench.terminal.type(f"{HOME} distance=-3000\n".encode())
     monkeypatch.setattr(bench.machine, "transfer", lambda words, _: [0] * len(words))
@@ -338,7 +338,7 @@ def test_the_session_in_the_documentation_is_real() -> None:
 
 
 def test_what_the_console_of_the_pc_refuses() -> None:
-    """Switches that cannot be, with what is wrong; pins that are not there."""
+    """Switches that cannot be, with what is wrong; pins that do not exist."""
     for options, problem in (
         (["--switch", "home:0:..5"], "--switch needs --inputs"),
         (["--inputs", "--switch", "home:4:..5"], "the core has no such axis"),

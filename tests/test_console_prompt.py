@@ -86,7 +86,7 @@ def test_ways_out(user: User, how: str) -> None:
 
 
 def test_progress_is_shown_and_can_be_interrupted(user: User) -> None:
-    """`run` and `wait` show the time that passes; ctrl-C ends them, and the console goes on."""
+    """`run` and `wait` show the time that passes; ctrl-C ends them, and the console continues."""
     user.ask(MOVE)
     user.type("wait\n")
     user.read("s simulated")

@@ -137,7 +137,7 @@ def test_velocity_of_every_tick(shape: int, mirror: bool) -> None:
 
 
 def test_full_speed_is_a_substep_every_second_clock() -> None:
-    """T = 0 sets the velocity at once; at 1/2 every axis can step on every second clock."""
+    """T = 0 sets the velocity immediately; at 1/2 every axis can step on every second clock."""
     ramps = [Ramp(HALF, 0), Ramp(HALF, 20), Ramp(0, 0, last=True)]
     assert distance(ramps) == 20 * 64
     assert check_motion([Line(1280, (1280, 1280, -1280), last=True)], ramps) == 3 * 1280

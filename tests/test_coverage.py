@@ -80,7 +80,7 @@ def test_constant_bits_are_no_holes(modules: dict[str, Module]) -> None:
 def test_a_wrong_list_is_an_error(
     modules: dict[str, Module], file: str, bits: tuple[str, ...], complaint: str
 ) -> None:
-    """Bits that are not there or not constant, or listed twice."""
+    """Bits that do not exist or are not constant, or listed twice."""
     assert wrong_exclusions(modules, [Exclusion(file, bits, "No.")]) == [f"{file}: {complaint}"]
 
 

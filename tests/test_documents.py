@@ -55,13 +55,15 @@ def test_worked_frames() -> None:
             assert list(engine.transfer(mosi, GAP)) == miso, number
 
 
-def test_every_error_of_the_driver_is_in_the_trouble_page() -> None:
+def test_every_error_of_driver_and_planner_is_in_the_trouble_page() -> None:
     """And no other."""
     c = planner()
     codes = {name for name in dir(c) if name.startswith(("PASSO_ERROR_", "PASSO_OK", "PASSO_PENDING"))}
     names = {error_name(getattr(c, name)) for name in codes if getattr(c, name) < c.PASSO_ERROR_COUNT}
+    names |= {error_name(c.PASSO_ERROR_PLAN + error) for error in range(1, c.PASSO_PLAN_TOO_NEAR + 1)}
+    names |= {error_name(c.PASSO_ERROR_ABSURD + c.PASSO_PLAN_NO_STEPS)}
     told = set(re.findall(r"`([A-Z][A-Z_]+)`", TROUBLE.read_text()))
-    words = {"STOPPED", "REFUSED", "LOST_STEPS", "LAST", "ARGUMENT"}
+    words = {"STOPPED", "REFUSED", "LOST_STEPS", "LAST", "ARGUMENT", "RAMP_TOO_SHORT"}
     assert names - told == set()
     assert told - names - words == set()
 

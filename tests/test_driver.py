@@ -183,7 +183,7 @@ TURNS = [3, 2, 1, 0]  # of the axes: of the signs, without zeros, from + on
 
 @pytest.mark.parametrize("how", ["moves", "stream"])
 def test_an_axis_that_stands_does_not_turn(driver: Driver, wire: Wire, how: str) -> None:
-    """DIR changes only where the next step goes the other way, whatever the line says of one that stands."""
+    """DIR changes only where the next step goes the other way, whatever the line says of a stationary one."""
     if how == "moves":
         for way in WAYS:
             driver.call("move_by_speed", by_speed(way))
@@ -209,7 +209,7 @@ def test_an_axis_that_stands_does_not_turn(driver: Driver, wire: Wire, how: str)
 def test_turning_without_end(driver: Driver, wire: Wire) -> None:
     """Start, change of speed, stop; no other move is accepted in between."""
     rpm = ffi().new("uint64_t *")
-    turning = struct("turning", axis=2, steps_per_turn=TURN, backwards=True)
+    turning = struct("turning", axis=2, steps_per_turn=TURN, backward=True)
     turning.top_rpm, turning.acceleration = 1200 * Q32, 5_000_000 * Q32
     assert error_of(driver, "turn_speed", Q32) == "NOT_TURNING"
     driver.call("turn_start", turning, 600 * Q32)
@@ -464,7 +464,7 @@ def test_a_stop_is_over_when_the_last_step_has_left_the_pins(driver: Driver, wir
 
 
 def test_a_drive_is_switched_off_at_rest(driver: Driver, wire: Wire) -> None:
-    """Not while a motion is running or queued; at once after an abort."""
+    """Not while a motion is running or queued; immediately after an abort."""
     driver.call("enable", 0, False)
     assert enabled(wire) == 0b1110
     driver.call("enable", 0, True)

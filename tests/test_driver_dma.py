@@ -191,7 +191,7 @@ def test_channels_that_share_a_core(wire: Wire) -> None:
 
 
 def test_no_channel_is_opened_while_another_prepares(wire: Wire) -> None:
-    """It would be in the way of what is prepared; the stream goes on, and then it opens."""
+    """It would be in the way of what is prepared; the stream continues, and then it opens."""
     wire = Wire(Parameters(channels=2, axes=2))
     first = open_driver(wire)
     stream_until_ahead(first)

@@ -264,7 +264,7 @@ def test_a_thread_has_its_pitch_and_phase(steps: int, counts: int) -> None:
 
 
 def test_moves_after_a_thread_have_the_cores_clock() -> None:
-    """Though the spindle stands; and a thread stands with it."""
+    """Though the spindle is stationary, and a thread with it."""
     driver, shafts = machine()
     driver.call("thread", thread(steps=[100], counts=400))
     shafts.run(CLOCK_HZ // 1000)
@@ -287,7 +287,7 @@ def test_moves_after_a_thread_have_the_cores_clock() -> None:
 
 
 def test_an_electronic_gear() -> None:
-    """Goes on until it is stopped, exactly in its ratio; its end is where it is."""
+    """Continues until it is stopped, exactly in its ratio; its end is where it is."""
     driver, shafts = machine()
     driver.call("thread", thread(steps=[3], counts=7, endless=True))
     for turns in range(1, 8):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A target and a speed that change on the way (stm32_bridge/driver/passo_goto.h), at the C model.
+"""A target and a speed that change in motion (stm32_bridge/driver/passo_goto.h), at the C model.
 
 Random histories with a judge of their own are in goto_histories.c.
 """
@@ -161,7 +161,7 @@ def test_a_host_that_falls_silent(after: int) -> None:
 
 
 def test_the_watchdog_stops_it_on_its_way() -> None:
-    """As every motion: a host that is silent for half a second."""
+    """As every motion: a host that sends nothing for half a second."""
     driver = open_driver(Wire(WATCHED))
     driver.call("configure_motion", 50 * MS, 50 * MS, 0)
     driver.call("goto", go(50_000))

@@ -250,7 +250,7 @@ def test_while_it_is_under_way() -> None:
 
 @pytest.mark.parametrize("at", [1, 12, 55, 103, 120, 200])
 def test_estop_in_the_middle(at: int) -> None:
-    """In each phase: at rest at once, drives off, its name; back step by step, without a motion."""
+    """In each phase: immediately at rest, drives off, its name; back step by step, without a motion."""
     machine = machine_of(Switch("home", 0, -1000))
     driver = driver_of(machine)
     assert run_home(driver, home()) == "OK"
@@ -374,12 +374,12 @@ def jog(**fields: Any) -> Any:
     return struct("jog", **({"speed": 20_000 * Q32, "acceleration": 1_000_000 * Q32} | fields))
 
 
-@pytest.mark.parametrize("backwards", [False, True])
-def test_jog_endless(backwards: bool) -> None:
+@pytest.mark.parametrize("backward", [False, True])
+def test_jog_endless(backward: bool) -> None:
     """It runs, changes its speed without a jump, and comes to rest in the time of its ramp; no clear."""
     machine = machine_of()
     driver = driver_of(machine)
-    driver.call("jog", jog(axis=1, backwards=backwards, top_speed=50_000 * Q32))
+    driver.call("jog", jog(axis=1, backward=backward, top_speed=50_000 * Q32))
     machine.run(CLOCK_HZ // 20)
     driver.poll()
     assert driver.is_moving
@@ -400,7 +400,7 @@ def test_jog_endless(backwards: bool) -> None:
 
 @pytest.mark.parametrize("seed", range(12))
 def test_jog_by_distance(seed: int) -> None:
-    """Exactly so many steps; or fewer when it is canceled, at rest, and the count is right."""
+    """Exactly this number of steps; or fewer when it is canceled, at rest, and the count is right."""
     rng = random.Random(seed)
     driver = driver_of(machine := machine_of())
     for _ in range(6):

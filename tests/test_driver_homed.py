@@ -193,7 +193,7 @@ def test_a_motion_waits_for_its_inputs(driver: Driver) -> None:
 
 
 def flicker(driver: Driver, milliseconds: int) -> str:
-    """A limit switch that never stands still."""
+    """A limit switch that never settles."""
     for n in range(4 * milliseconds):
         driver.engine.engine.set("limit_high", n % 2)
         driver.engine.run(MS // 4)

@@ -70,7 +70,7 @@ def test_levels_and_flags() -> None:
 
 
 def test_trigger_latches_and_is_waited_for() -> None:
-    """The position of the edge; only once; the move goes on."""
+    """The position of the edge; only once; the move continues."""
     switch = Switch("home", 0, 500, above=True)
     driver = driver_of(machine_of(switch))
     driver.call("arm_trigger", struct("trigger_config", source=TriggerSource.HOME))
@@ -132,7 +132,7 @@ def test_alarm_keeps_it_stopped() -> None:
 
 @pytest.mark.parametrize("pin", ["estop_n", "alarm"])
 def test_stuck_at_power_up(pin: str) -> None:
-    """The channel opens stopped, can be configured, and goes on when that is over."""
+    """The channel opens stopped, can be configured, and continues when that is over."""
     machine = machine_of()
     machine.set(pin, 0 if pin == "estop_n" else 15)
     name = "ESTOP" if pin == "estop_n" else "ALARM"

@@ -42,7 +42,7 @@ WAITS = pytest.mark.parametrize("wire", ["waits"], indirect=True)
 
 @pytest.fixture(params=["waits", "dma"])
 def wire(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Wire:
-    """A wire to a host that waits for each frame, or that goes on while frames are on it."""
+    """A wire to a host that waits for each frame, or that continues while frames are on it."""
     if request.param == "dma":
         monkeypatch.setattr("passo.driver.Hardware", Dma)
     return Wire()
@@ -121,7 +121,7 @@ def recover(driver: Driver, wire: Wire) -> list[int]:
 
 @pytest.mark.parametrize("level", [0, 1])
 def test_a_wire_that_is_pulled_out(wire: Wire, level: int) -> None:
-    """The link dies at any frame of a move: it is reported; the move is made completely or not at all."""
+    """The link fails at any frame of a move: it is reported; the move is made completely or not at all."""
     rng = random.Random(f"{SEED} {level}")
     driver = open_driver(wire, tries=4)
     at = [0] * 4
@@ -399,9 +399,9 @@ def test_a_stop_that_was_not_acknowledged(wire: Wire, how: str, level: int, cut:
 
 @pytest.mark.parametrize("frames", [0, 1])
 def test_an_end_of_turning_that_was_not_acknowledged(wire: Wire, frames: int) -> None:
-    """A soft stop replaces it, whichever frame the link died at."""
+    """A soft stop replaces it, whichever frame the link failed at."""
     driver = open_driver(wire)
-    turning = struct("turning", axis=2, steps_per_turn=3200, backwards=True)
+    turning = struct("turning", axis=2, steps_per_turn=3200, backward=True)
     turning.top_rpm, turning.acceleration = 1200 * Q32, 5_000_000 * Q32
     driver.call("turn_start", turning, 600 * Q32)
     wire.run(CLOCK_HZ // 20)

@@ -164,7 +164,7 @@ def test_a_motion_that_has_not_begun(first: Driver, what: str) -> None:
 @pytest.mark.parametrize("held", [False, True])
 @pytest.mark.parametrize("way", ["end", "stop", "abort"])
 def test_a_motion_that_runs(first: Driver, way: str, held: bool) -> None:
-    """It goes on as it was told, what is queued behind it waits; then the channel is taken over."""
+    """It continues as commanded, what is queued behind it waits; then the channel is taken over."""
     wire = first.engine
     first.call("arm_trigger", struct("trigger_config", source=TriggerSource.PROBE, action=1))
     first.call("move_by_speed", by_speed([2000, 0, 0]))
@@ -219,7 +219,7 @@ def test_a_stopped_core(first: Driver, name: str) -> None:
 
 @pytest.mark.parametrize("name", ["ESTOP", "ALARM"])
 def test_a_core_that_is_kept_stopped(first: Driver, name: str) -> None:
-    """It is open, and goes on when that is over."""
+    """It is open, and continues when that is over."""
     pin, active, idle = ("estop_n", 0, 1) if name == "ESTOP" else ("alarm", 1, 0)
     first.engine.engine.set(pin, active)
     first.engine.run(MS)
@@ -245,7 +245,7 @@ def test_override_and_hold_at_rest(first: Driver) -> None:
 
 
 def test_another_host(first: Driver) -> None:
-    """It is taken over; the other one is told with its next frame."""
+    """It is taken over; the other one is notified with its next frame."""
     jog(first, steps=100)
     first.wait(1)
     second = again(first)

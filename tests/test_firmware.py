@@ -239,7 +239,7 @@ def test_a_move_waits_for_room() -> None:
 
 
 def test_urgent_lines_pass_a_move_that_waits() -> None:
-    """Status and hold are answered at once; the move is answered when the motion has gone on."""
+    """Status and hold are answered immediately, the move when the motion has continued."""
     board = model_board()
     long = "move steps=100 profile=linear total_time=0.1 ramp_time=0.02"
     for _ in range(5):

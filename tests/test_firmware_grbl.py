@@ -112,7 +112,7 @@ def test_worn_flash_is_told(board: GrblBoard) -> None:
 
 
 def is_after(report: dict[str, str], steps: int) -> bool:
-    """X is where so many steps from 0 lead to."""
+    """X is where `steps` steps from 0 lead to."""
     return abs(float(report["MPos"].split(",")[0]) - steps / 80) < 0.001
 
 
@@ -195,7 +195,7 @@ def test_reset_in_mid_path(board: GrblBoard) -> None:
 
 
 def test_reset_of_the_board_in_mid_path(board: GrblBoard) -> None:
-    """The core goes on; the board stops it and knows where it is."""
+    """The core continues; the board stops it and knows where it is."""
     board.line(LONG)
     board.run(0.3)
     since = len(board.output)
@@ -252,7 +252,7 @@ def test_lost_bytes_refuse_their_line(board: GrblBoard) -> None:
 
 
 def test_without_a_core(elf: Path) -> None:
-    """It is told once; no watchdog bites, and fast blinking shows it."""
+    """It is reported once; no watchdog trips, and fast blinking shows it."""
     machine = Machine(elf, None)
     machine.run(1.5)
     assert machine.output == "\r\n[MSG:Reset by power]\r\n[MSG:STUCK_LOW]\r\n"
@@ -275,7 +275,7 @@ def test_link_is_lost_in_mid_path(board: GrblBoard) -> None:
 
 
 def test_estop_at_the_start(fast_elf: Path) -> None:
-    """It is told, and the greeting follows when it is over. A machine with homes is locked."""
+    """It is reported, and the greeting follows when it is over. A machine with homes is locked."""
     with model_engine(replace(parameters_for(3), inputs=1), HZ) as engine:
         engine.set("estop_n", 0)
         machine = Machine(fast_elf, engine, baud=FAST_BAUD)

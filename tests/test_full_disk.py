@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A disk that is full, a cache that is not whole: each is told in a sentence, and harms no later command."""
+"""A disk that is full, an incomplete cache: each is reported in a sentence, and harms no later command."""
 
 import ctypes
 import errno
@@ -170,7 +170,7 @@ def test_the_command_mends_its_cache(tmp_path: Path) -> None:
     env = {**os.environ, "PASSO_BUILD": str(tmp_path)}
     done = subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
-    said = "Building planner again, as the one in the cache is not whole ..."
+    said = "Building planner again, as the one in the cache is incomplete ..."
     assert [line for line in done.stdout.splitlines() if line.startswith("Building")] == [said]
 
 
@@ -222,7 +222,7 @@ def files(out: Path) -> list[Path]:
 def test_a_full_disk_is_a_sentence(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """At any length of a file: what is there is complete, nothing else is left, and the next run is good."""
+    """At any length of a file: files are complete, nothing else is left, and the next run is good."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "stdin", io.StringIO())
     out, refused = tmp_path / "out", 0
@@ -302,10 +302,10 @@ DIRECT = {
     "stm32_bridge/passo_stm32/board.py": "a lock",
     "verify/equal/wiring.py": "into a copy of the sources",
     "verify/mutants/c_judge.py": "a map that its own workers share",
-    "verify/mutants/c_source.py": "into a folder that is made anew",
+    "verify/mutants/c_source.py": "into a folder that is created each time",
     "verify/mutants/c_worker.py": "into the map of its judge",
     "verify/mutants/formal_judge.py": "into a folder of its own",
-    "verify/mutants/netlist.py": "into a folder that is made anew",
+    "verify/mutants/netlist.py": "into a folder that is created each time",
     "syn/passo_fpga/flow.py": "into a folder that is renamed",
     "syn/passo_fpga/netlist.py": "into a folder that is renamed",
     "syn/passo_fpga/block_ram.py": "into a folder that is renamed",

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 from passo import random_cases
-from passo.gcode import NANOMETRES, Gcode, GcodeError, GcodeSettings, lines, stripped
+from passo.gcode import NANOMETERS, Gcode, GcodeError, GcodeSettings, lines, stripped
 from passo.native import ffi, planner
 from passo.path import NOT_MOVING
 
@@ -33,7 +33,7 @@ def run(gcode: Gcode, *lines: str) -> list[Any]:
 
 def at(gcode: Gcode) -> tuple[float, ...]:
     """Position in mm."""
-    return tuple(n / NANOMETRES for n in gcode.position)
+    return tuple(n / NANOMETERS for n in gcode.position)
 
 
 # --------------------------------------------------------------------------------------------- numbers
@@ -46,7 +46,7 @@ def test_numbers_are_exact_to_a_nanometre(text: str) -> None:
     """Rounded to millionths, ties away from zero."""
     gcode = Gcode()
     run(gcode, f"G0X{text}")
-    exact = Fraction(text.rstrip(".")) * NANOMETRES
+    exact = Fraction(text.rstrip(".")) * NANOMETERS
     assert abs(gcode.position[0] - exact) <= Fraction(1, 2)
     if exact.denominator == 1:
         assert gcode.position[0] == exact
@@ -242,16 +242,16 @@ def test_g10_l20_gives_the_position_its_coordinates() -> None:
 
 
 def test_stored_positions() -> None:
-    """G28 and G30: through a point with the given axes, or at once with all."""
+    """G28 and G30: through a point with the given axes, or directly with all."""
     gcode = Gcode()
     assert [a.kind for a in run(gcode, "G0 X1 Y2 Z3", "G28.1")] == [OFFSETS]
     run(gcode, "G0 X7 Y7 Z7", "G30.1", "G0 X50 Y50 Z50")
     via, home = run(gcode, "G91 G28 Z10")
-    assert list(via.target)[:3] == [50 * NANOMETRES, 50 * NANOMETRES, 60 * NANOMETRES]
-    assert list(home.target)[:3] == [50 * NANOMETRES, 50 * NANOMETRES, 3 * NANOMETRES]
+    assert list(via.target)[:3] == [50 * NANOMETERS, 50 * NANOMETERS, 60 * NANOMETERS]
+    assert list(home.target)[:3] == [50 * NANOMETERS, 50 * NANOMETERS, 3 * NANOMETERS]
     assert via.feed == home.feed == RAPID
     (home,) = run(gcode, "G30")
-    assert list(home.target)[:3] == [7 * NANOMETRES] * 3
+    assert list(home.target)[:3] == [7 * NANOMETERS] * 3
 
 
 def test_modes_last_and_end_with_the_program() -> None:
@@ -294,8 +294,8 @@ def test_outputs_and_their_order() -> None:
 def test_probes_and_line_numbers() -> None:
     gcode = Gcode()
     (probe,) = run(gcode, "N17 G38.3 Z-10 F60")
-    assert (probe.kind, probe.probe, probe.line, probe.target[2]) == (PROBE, 383, 17, -10 * NANOMETRES)
-    position = ffi().new("int64_t[6]", [0, 0, -3 * NANOMETRES])
+    assert (probe.kind, probe.probe, probe.line, probe.target[2]) == (PROBE, 383, 17, -10 * NANOMETERS)
+    position = ffi().new("int64_t[6]", [0, 0, -3 * NANOMETERS])
     planner().passo_gcode_set_position(gcode.c, position)
     assert at(gcode) == (0, 0, -3)
 
@@ -339,5 +339,5 @@ def test_a_jog_leaves_the_modes() -> None:
 def test_targets_for_the_planner() -> None:
     """Q31.32 mm, to the nearest."""
     for nanometers in (0, 1, -1, 500_000, 123_456_789, -987_654_321_012, NOT_MOVING):
-        exact = Fraction(nanometers, NANOMETRES) * 2**32
+        exact = Fraction(nanometers, NANOMETERS) * 2**32
         assert abs(planner().passo_gcode_millimetres(nanometers) - exact) <= Fraction(1, 2)

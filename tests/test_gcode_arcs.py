@@ -7,7 +7,7 @@ import random
 import numpy as np
 import pytest
 from passo import random_cases
-from passo.gcode import NANOMETRES, Gcode, GcodeSettings
+from passo.gcode import NANOMETERS, Gcode, GcodeSettings
 from passo.native import ffi, planner
 
 TURN = 1 << 64
@@ -29,11 +29,11 @@ def corners(gcode: Gcode, *lines: str) -> np.ndarray:
 
 
 def judge(
-    points: np.ndarray, plane: str, centre: np.ndarray, clockwise: bool, tolerance: float, turn: float | None
+    points: np.ndarray, plane: str, center: np.ndarray, clockwise: bool, tolerance: float, turn: float | None
 ) -> None:
     """Corners on the circle, chords within the tolerance, one way round, a straight helix."""
     first, second, other = PLANES[plane]
-    flat = points[:, [first, second]] - centre
+    flat = points[:, [first, second]] - center
     radius = np.hypot(*flat[0])
     assert np.abs(np.hypot(flat[:-1, 0], flat[:-1, 1]) - radius).max() < 1.0
     chords = np.hypot(*np.diff(flat[:-1], axis=0).T) if len(flat) > 2 else np.zeros(1)
@@ -58,17 +58,17 @@ def judge(
 def test_arcs_are_on_the_circle(plane: str, clockwise: bool, turn: float, radius: float) -> None:
     """In all planes, both ways, to full circles and helices; the end exactly."""
     first, second, other = PLANES[plane]
-    centre = np.array([round(12.345678e6), round(-7.654321e6)])
+    center = np.array([round(12.345678e6), round(-7.654321e6)])
     sign = -1 if clockwise else 1
     places = []
     for angle in (0.7, 0.7 + sign * turn):
-        radial = radius * NANOMETRES * np.array([math.cos(angle), math.sin(angle)])
-        places.append(np.rint(centre + radial).astype(np.int64))
+        radial = radius * NANOMETERS * np.array([math.cos(angle), math.sin(angle)])
+        places.append(np.rint(center + radial).astype(np.int64))
     if turn == 2 * math.pi:
         places[1] = places[0]
     begin, end = places
     gcode = Gcode(GcodeSettings(arc_tolerance=0.002))
-    offset = centre - begin
+    offset = center - begin
     letters, offsets = "XYZ", "IJK"
     start = f"G0 {letters[first]}{begin[0] / 1e6:.6f} {letters[second]}{begin[1] / 1e6:.6f} {letters[other]}1"
     arc = (
@@ -78,7 +78,7 @@ def test_arcs_are_on_the_circle(plane: str, clockwise: bool, turn: float, radius
     points = corners(gcode, f"{plane} F100", start, arc)
     assert gcode.position[first] == end[0] and gcode.position[second] == end[1]
     assert points[-1].tolist() == list(gcode.position)
-    judge(points, plane, centre, clockwise, 2000, None if radius * turn < 0.01 else turn)
+    judge(points, plane, center, clockwise, 2000, None if radius * turn < 0.01 else turn)
 
 
 @pytest.mark.parametrize("tolerance", [0.000001, 0.0001, 0.01, 5])
@@ -92,7 +92,7 @@ def test_no_more_chords_than_needed(tolerance: float) -> None:
 @pytest.mark.parametrize("clockwise", [False, True])
 @pytest.mark.parametrize("major", [False, True])
 def test_the_radius_form(clockwise: bool, major: bool) -> None:
-    """The centre is as far from both ends, on the side of the shorter or the longer way."""
+    """The center is as far from both ends, on the side of the shorter or the longer way."""
     rng = random.Random(random_cases.seed())
     for _ in range(60):
         x, y = (round(rng.uniform(-50, 50), 4) for _ in range(2))
@@ -103,12 +103,12 @@ def test_the_radius_form(clockwise: bool, major: bool) -> None:
         chord = np.array([x, y]) * 1e6
         r = round(radius, 6) * 1e6
         aside = math.sqrt(r**2 - chord @ chord / 4) * (-1 if clockwise != major else 1)
-        centre = chord / 2 + aside * np.array([-chord[1], chord[0]]) / math.hypot(*chord)
+        center = chord / 2 + aside * np.array([-chord[1], chord[0]]) / math.hypot(*chord)
         half = math.asin(min(1.0, math.hypot(*chord) / 2 / r))
-        # the centre is whole nanometers, within 1.5 nm
-        assert abs(np.hypot(*(points[:-1, :2] - centre).T) - r).max() < 4
+        # the center is whole nanometers, within 1.5 nm
+        assert abs(np.hypot(*(points[:-1, :2] - center).T) - r).max() < 4
         judge_turn = 2 * (math.pi - half if major else half)
-        flat = points[:, :2] - centre
+        flat = points[:, :2] - center
         cross = flat[:-1, 0] * flat[1:, 1] - flat[:-1, 1] * flat[1:, 0]
         angles = np.arctan2(cross, (flat[:-1] * flat[1:]).sum(axis=1)) * (-1 if clockwise else 1)
         assert abs(float(angles.sum()) - judge_turn) < 1e-4

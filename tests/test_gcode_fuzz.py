@@ -14,7 +14,7 @@ SECONDS = str(random_cases.fuzz_seconds())
 
 
 def test_no_line_breaks_the_interpreter(tmp_path: Path) -> None:
-    """No undefined behavior, nothing half done, nothing that the planner cannot take."""
+    """No undefined behavior, no partial effect, nothing that the planner cannot take."""
     folders = (paths.gcode, paths.planner, paths.protocol)
     program = sanitized.program(tmp_path / "fuzz", paths.tests / "gcode_fuzz.c", folders)
     done = subprocess.run([program, SEED, SECONDS], capture_output=True, text=True, timeout=600)

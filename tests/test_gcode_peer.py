@@ -53,14 +53,14 @@ def test_random_programs() -> None:
         ours = play_passo(program)
         found = verdict(ours, play_rs274(program))
         assert not found, "\n".join([f"seed {random_cases.seed()}: {found}", *program])
-        arcs += sum(motion.centre is not None for motion in ours.motions)
+        arcs += sum(motion.center is not None for motion in ours.motions)
         refused += ours.refused > 0
     assert arcs > 3 * PROGRAMS and refused > PROGRAMS / 20
 
 
 @pytest.mark.parametrize("right", CHANGES)
 def test_a_change_is_seen(right: str) -> None:
-    """Of target, feed, centre, way round, offsets, outputs, tolerance, refusals."""
+    """Of target, feed, center, way round, offsets, outputs, tolerance, refusals."""
     one, other = ["G0", *right.split("\n")], ["G0", *CHANGES[right].split("\n")]
     assert compare(one) == "" and compare(other) == ""
     assert verdict(play_passo(one), play_rs274(other))

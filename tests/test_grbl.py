@@ -76,7 +76,7 @@ def test_reports(session: Session) -> None:
 
 
 def test_hold_and_resume(session: Session) -> None:
-    """The path stops on the path, and goes on to its exact end."""
+    """The path stops on the path, and continues to its exact end."""
     session.line("G1 X30 F6000")
     session.grbl.wait(lambda: False, 0.15)
     session.line("!")
@@ -111,7 +111,7 @@ def test_a_reset_in_mid_path(session: Session, held: bool) -> None:
     assert session.report()["MPos"] == "-5.000,1.000,0.000"
 
 
-def test_jogs_end_at_once_without_an_alarm(session: Session) -> None:
+def test_jogs_end_immediately_without_an_alarm(session: Session) -> None:
     session.line("G91 G20")
     assert session.line("$J=G21 G91 X50 F6000") == "ok"
     session.grbl.wait(lambda: False, 0.2)
@@ -125,7 +125,7 @@ def test_jogs_end_at_once_without_an_alarm(session: Session) -> None:
 
 
 def test_feed_overrides(session: Session) -> None:
-    """Down by the time scale, up by planning anew."""
+    """Down by the time scale, up by replanning."""
     for codes, percent, feed in ((b"\x92\x92\x94", 79, 2370), (b"\x90\x91\x91\x93", 121, 3630)):
         for code in codes:
             session.grbl.type(bytes([code]))

@@ -54,7 +54,7 @@ def test_a_reset_ends_a_dwell(session: GrblConsole) -> None:
 
 
 def test_the_end_of_the_program(session: GrblConsole) -> None:
-    """At rest; it is told before it is answered."""
+    """At rest; the message comes before the answer."""
     session.line("G1 X-10 F3000")
     assert seconds_until_answered(session, "M30") > 0.15
     assert session.log.endswith("[MSG:Pgm End]\r\nok\r\n") and session.fields("MPos")[0] == -10

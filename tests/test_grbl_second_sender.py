@@ -20,7 +20,7 @@ PART = ["G21 G90", *(f"G1 X-{2 + i % 2 * 0.1:g} Y-{i * 0.1:g} F6000" for i in ra
 
 
 class Sender(GrblStreamer):
-    """Keeps what it is told; it asks for the state at the ends of jobs only."""
+    """Keeps all answers; it asks for the state at the ends of jobs only."""
 
     def __init__(self, port: str):
         super().__init__(port)

@@ -129,7 +129,7 @@ def test_jobs_of_the_firmware(firmware: Sender, tmp_path: Path) -> None:
 
 
 def test_hold_and_resume(connected: tuple[Sender, Grbl]) -> None:
-    """In the middle of a job, which then goes on to its end."""
+    """In the middle of a job, which then runs to its end."""
     sender, _ = connected
     sender.start(["G0 X0 Y0", "G1 X20 F1200", "X0"])
     sender.until(lambda: sender.grbl.cmpos[0] > 0)
@@ -164,7 +164,7 @@ def test_a_reset_in_motion(connected: tuple[Sender, Grbl]) -> None:
 
 
 def test_a_bad_line(connected: tuple[Sender, Grbl]) -> None:
-    """The sender is told which, and halts."""
+    """The sender gets its number, and halts."""
     sender, _ = connected
     sender.start(["G0 X1", "G1 X2 F600", "G1 Y1 Y2", "G0 X30"], incremental=True)
     text, command, number = sender.wait("on_error")

@@ -32,6 +32,53 @@ def test_planted_mistake(words: str) -> None:
     assert line == 3 and message
 
 
+CODE = (
+    (".py", '"""It acts\nat once."""'),
+    (".py", "x = 1  # it acts at once"),
+    (".py", "print(f'it acts at once')"),
+    (".c", "/* it acts at\n * once */"),
+    (".c", 'puts("it acts at "\n     "once more");'),
+    (".vh", "// it acts at\n// once"),
+    (".v", '$display("at once");'),
+    (".rdl", 'desc = "It acts\n at once.";'),
+    (".js", "`${what} acts at once`"),
+    (".toml", "# it acts at once"),
+    (".sh", "# the colour"),
+    ("Makefile", "\t@echo 'it acts at once'"),
+)
+NAMES = (
+    (".c", "at(once);"),
+    (".c", "at = 1, once = 2; /* at */ once(); /* once */"),
+    (".c", 'enum { wants }; #include "poke.h"'),
+    (".py", "at = 'at', once"),
+    (".py", "# what `at once` means"),
+    (".py", "# that recieves"),  # the dictionary is for pages
+    (".v", "wire at; // at\nwire once;"),
+)
+
+
+@pytest.mark.parametrize(("kind", "text"), CODE)
+def test_phrase_in_a_comment_or_a_string(kind: str, text: str) -> None:
+    ((line, message),) = lint_prose.objections(f"\n\n{text}\n", kind)
+    assert line == 3 + ("\nat" in text) + ("\n at" in text) and "write" in message
+
+
+@pytest.mark.parametrize(("kind", "text"), NAMES)
+def test_names_in_code(kind: str, text: str) -> None:
+    assert list(lint_prose.objections(text, kind)) == []
+
+
+def test_sources_are_those_of_the_project() -> None:
+    """All that git knows of these kinds, but those that are skipped."""
+    kinds = ("*.py", "*.[chv]", "*.cpp", "*.vh", "*.rdl", "*.js", "*.toml", "*.sh", "*Makefile")
+    command = ["git", "-C", paths.root, "ls-files", *kinds]
+    known = {paths.root / name for name in subprocess.check_output(command, text=True).split()}
+    skipped = [paths.root / name for name in lint_prose.rules()["skipped"]]
+    read = set(lint_prose.sources())
+    missing = {file for file in known - read if not any(file.is_relative_to(each) for each in skipped)}
+    assert {file.relative_to(paths.root).as_posix() for file in missing} == {"pyproject.toml"}
+
+
 def test_code_blocks_keep_the_lines() -> None:
     ((line, _),) = lint_prose.objections("```\ncolour at once\n```\n\nThe colour.\n")
     assert line == 5
@@ -57,7 +104,11 @@ def test_make_lint_fails(tmp_path: Path) -> None:
         shutil.copy(page, copy)
     command = [sys.executable, tmp_path / "tools" / "lint_prose.py"]
     assert subprocess.run(command).returncode == 0
+    source = tmp_path / "rtl" / "planted.v"
+    source.parent.mkdir()
+    source.write_text("// It acts at once.\n")
     with copy.open("a") as page:
         page.write("\nThe colour changes.\n")
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 1 and "'colour'" in done.stdout and copy.name in done.stdout
+    assert "rtl/planted.v:1: 'at once'" in done.stdout

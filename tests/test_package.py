@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The file list and the FuseSoC core name the sources that are there, and work; there is one version."""
+"""The file list and the FuseSoC core name the sources of the tree, and work; there is one version."""
 
 import os
 import re

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What README.md and docs/ print is typed here as it stands there."""
+"""What README.md and docs/ print is typed here as printed there."""
 
 import re
 import shlex
@@ -96,7 +96,7 @@ def test_make_targets_exist(page: Path) -> None:
 
 
 def test_help_imports_nothing_heavy() -> None:
-    """`passo --help` answers at once."""
+    """`passo --help` answers immediately."""
     code = (
         "import sys; from passo import cli\ntry: cli.main(['--help'])\nexcept SystemExit: print(*sys.modules)"
     )

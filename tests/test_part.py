@@ -12,7 +12,7 @@ import pytest
 from passo import cli, part_command
 from passo.driver import Driver, DriverError
 from passo.failure import BadInputError
-from passo.gcode import NANOMETRES, GcodeSettings
+from passo.gcode import NANOMETERS, GcodeSettings
 from passo.machine_file import MachineFile, read_machine
 from passo.moves import PinTiming, q32
 from passo.native import planner
@@ -177,7 +177,7 @@ def test_the_end_is_exact_in_any_units(tmp_path: Path) -> None:
     played = play(tmp_path, "G20 G91 G1 F100\n" + "X0.0007 Y-0.00013\n" * 300)
     assert played.problems() == []
     assert played.part.end[0] == 300 * 17_780
-    assert played.end[:2] == [round(300 * 17_780 * 80 / NANOMETRES), round(-300 * 3_302 * 80 / NANOMETRES)]
+    assert played.end[:2] == [round(300 * 17_780 * 80 / NANOMETERS), round(-300 * 3_302 * 80 / NANOMETERS)]
 
 
 # ---------------------------------------------------------------------------------------- bad input

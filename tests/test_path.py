@@ -340,7 +340,7 @@ def test_short_lines_are_merged_within_the_tolerance() -> None:
 
 
 def test_what_is_not_alike_is_not_merged() -> None:
-    """Another feed, another output, a dwell, a corner, a way back."""
+    """Another feed, another output, a dwell, a corner, a reversal."""
     step = 0.01
     for change in ("feed", "output", "dwell", "corner", "back", "nothing"):
         path = Path(replace(MACHINE, tolerance=None), Parameters(), 48)

@@ -133,7 +133,7 @@ def test_random_lines(c: Any) -> None:
 
 
 def test_far_and_near(c: Any) -> None:
-    """The largest number of steps, eight axes at once, what rounds to one more, and a distance below half a
+    """The largest number of steps, eight axes together, what rounds to one more, and a distance below half a
     step."""
     machine = Machine(4_000_000_000)
     own = {"steps_per_mm": q32(1), "speed": q32(1e9), "acceleration": q32(4e9), "jerk": 0}

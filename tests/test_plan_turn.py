@@ -41,7 +41,7 @@ GOOD = {
 }
 TURNING = {"axis": 0, "steps_per_turn": 1600, "top_rpm": q32(300), "minimum_rpm": q32(6)} | {
     "acceleration": q32(20_000),
-    "backwards": False,
+    "backward": False,
 }
 
 
@@ -234,9 +234,9 @@ def measured(engine: Engine, channel: Channel, clock_hz: int) -> int:
     return (channel.positions()[0] - before) * clock_hz // (engine.clock - clock)
 
 
-def test_backwards_and_without_minimum(c: Any) -> None:
+def test_backward_and_without_minimum(c: Any) -> None:
     machine = Machine()
-    plan = turning(c, machine, "start", q32(60), backwards=True, minimum_rpm=0, axis=1)
+    plan = turning(c, machine, "start", q32(60), backward=True, minimum_rpm=0, axis=1)
     line = plan.c.line
     assert line.endless and not line.last and line.directions == 2
     assert line.steps[1] * plan.c.oversampling == line.substeps <= SUBSTEPS_MAX

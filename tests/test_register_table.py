@@ -121,7 +121,7 @@ class Core:
         return Verdict.OK
 
     def taken(self, register: Register) -> int:
-        """The bits that may be 1 alone: only those of channels and axes that are there.
+        """The bits that may be 1 alone: only those of existing channels and axes.
 
         A trigger cannot be armed without a source.
         """

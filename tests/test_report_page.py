@@ -234,7 +234,7 @@ WORDS = "document.getElementById('verdict').textContent"
 
 
 def test_a_stop_at_a_limit(browser: Browser, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Page, terminal and summary say what stopped it, what was made of what was asked, where it stands."""
+    """Page, terminal and summary say what stopped it, how many steps were made, the position."""
     moves = tmp_path / "moves.toml"
     moves.write_text(LIMIT.replace("role", 'role = "limit_high"\naxis = 1\n[[machine.input]]\nrole', 1))
     command = ["run", str(moves), "--engine", "model", "--report", "--out", str(tmp_path)]

@@ -194,7 +194,7 @@ def test_files_of_several_channels(tmp_path: Path) -> None:
     assert (first["channel"], first["start_clock"], second["channel"]) == (1, 0, 3)
     assert second["start_clock"] > 0
     assert summary["total_clocks"] == second["start_clock"] + second["total_clocks"]
-    # An underrun of one channel is told with its number; the other goes on.
+    # An underrun of one channel is reported with its number; the other continues.
     short = move.format(1, [3]).replace("0.02", "0.0003").replace("0.01", "0.0001")
     text = text.replace("[60, -20]", "[60]") + 30 * short
     done = passo("run", write(tmp_path, text), "--engine", "model", "--out", out)
@@ -214,7 +214,7 @@ def test_a_host_that_is_too_slow(tmp_path: Path, capsys: pytest.CaptureFixture[s
 
 
 class Tampered:
-    """An engine that is told another pin timing of axis 1 than the host wanted."""
+    """An engine configured with another pin timing of axis 1 than the host wanted."""
 
     def __init__(self, engine: object):
         self.engine = engine
@@ -281,7 +281,7 @@ def test_answers_are_compared() -> None:
 
 
 class Noisy(Tampered):
-    """A link on which some frames are damaged on the way there or on the way back."""
+    """A link on which some frames are damaged on MOSI or on MISO."""
 
     count = 0
 

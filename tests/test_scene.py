@@ -126,7 +126,7 @@ def test_an_event_at_a_trigger(tmp_path: Path) -> None:
 
 
 def test_arm(tmp_path: Path) -> None:
-    """The latch has the positions 3 + filter clocks after the edge, and the motion goes on."""
+    """The latch has the positions 3 + filter clocks after the edge, and the motion continues."""
     text = machine('filter = "20us"', 'role = "probe"\nat = 900\nside = "above"')
     text += event('do = "arm"\nsource = "probe"\ntime = "10ms"')
     run = play(tmp_path, text + MOVE)
@@ -181,7 +181,7 @@ HOME_SWITCH = 'role = "home"\nat = 100\nhysteresis = 10\nbounce = "200us"\nnoise
 
 
 def test_home(tmp_path: Path) -> None:
-    """The position of the edge is what was told, to the steps made during its filter and chatter."""
+    """The position of the edge is as commanded, to the steps made during its filter and chatter."""
     text = machine('filter = "40us"\nstop_time = "4ms"\nstart = [500, 0]', HOME_SWITCH)
     run = play(tmp_path, text + HOME + MOVE)
     assert run.problems() == []
@@ -255,7 +255,7 @@ def test_the_encoder_follows(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("stop", ["soft", "hard", "none"])
 def test_a_lost_step_is_seen(tmp_path: Path, stop: str) -> None:
-    """A limit of 1.5 steps sees one lost step with the next one, and stops as it was told."""
+    """A limit of 1.5 steps sees one lost step with the next one, and stops as configured."""
     text = machine('stop_time = "4ms"', encoder=ENCODER + f'\nlimit = 1.5\nstop = "{stop}"')
     run = play(tmp_path, text + MOVE + event('do = "slip"\nposition = 1000\ncounts = -4'))
     assert run.problems() == []

@@ -169,7 +169,7 @@ def test_a_thread_is_held(tmp_path: Path) -> None:
 
 
 def test_a_thread_without_its_index(tmp_path: Path) -> None:
-    """It begins at once: the phase is that of the moment."""
+    """It begins immediately: the phase is that of the moment."""
     thread = THREAD + "wait_index = false\n"
     text = "[machine]\n" + SPINDLE + thread + BACK + thread
     run = play(tmp_path, text)

@@ -48,7 +48,7 @@ def test_no_promise_is_broken_in_the_model(program: Path) -> None:
     ("kind", "histories"), [("machine", 100), ("tries", 20), ("starts", 15), ("pokes", 5)]
 )
 def test_no_promise_is_broken_with_a_machine(program: Path, kind: str, histories: int) -> None:
-    """Events of all kinds, drives into active switches, random pokes."""
+    """Events of all kinds, drives into active switches, register fuzzing."""
     part = parts.play_model(program, SEED, histories, JOBS, kind)
     check(part, histories)
     if kind == "machine":

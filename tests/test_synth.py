@@ -83,7 +83,7 @@ GOWIN_FUNCTIONS = {
 
 
 def test_pins_of_the_configuration_are_released() -> None:
-    """All that the board uses; each is told if its option is missing."""
+    """All that the board uses; each is reported if its option is missing."""
     (tang,) = [board for board in BOARDS if board.device.family is GOWIN]
     pins = {port: pin.pin for port, pin in tang.ports().items()}
     assert held_pins(pins, GOWIN_FUNCTIONS, tang.pack) == ()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`passo run --waves`: the window is exact, and the save file shows signals that are there."""
+"""`passo run --waves`: the window is exact, and the save file shows existing signals."""
 
 import re
 from pathlib import Path

@@ -99,7 +99,7 @@ def test_gcode_makes_the_same_steps_as_the_command(tmp_path: Path) -> None:
                 assert browser.value(f"Array.from({own}.counted)") == positions.tolist()
 
 
-def test_the_tool_path_has_the_colour_of_its_speed(tmp_path: Path) -> None:
+def test_the_tool_path_has_the_color_of_its_speed(tmp_path: Path) -> None:
     with Browser(tmp_path / "browser") as browser:
         browser.open(build(tmp_path / "web").as_uri(), "passo")
         run_gcode(browser, "G21 G90\nG1 X30 Y40 F3000\nX-30 Y120 F1500")

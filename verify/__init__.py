@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""What the project promises, and what shows that it is kept: proofs, equality, histories, mutants."""
+"""Verification of the promises: proofs, equality, histories, mutants."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Write docs/reference/modules.md: what is promised of each module of rtl/, and what shows that it is kept.
+"""Write docs/reference/modules.md: what verifies each module of rtl/.
 
 .venv/bin/python -m verify.page
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Show that the promises are kept: by proofs, equality with the model, histories, cut wires and mutants.
+"""Verify the promises by proofs, equality with the model, histories, inverted wires and mutants.
 
     .venv/bin/python -m verify.run [--seed N] [--scale X] [NAME ...]
 
@@ -103,7 +103,7 @@ def main() -> None:
     """Run the parts one after the other, print what came of them; exit status 1 unless all are good."""
     known = parts()
     parser = argparse.ArgumentParser(prog="python -m verify.run", description=__doc__.split("\n")[0])
-    parser.add_argument("name", nargs="*", help=f"{', '.join(known)}, or what they know")
+    parser.add_argument("name", nargs="*", help=f"{', '.join(known)}, or a proof, module, kind or source")
     parser.add_argument(
         "--seed", type=int, default=1, help="seed of scenarios and mutants (default: %(default)s)"
     )

@@ -2,7 +2,7 @@
 """Four published methods of making step pulses with the timers of an STM32, with their original arithmetic.
 
 Integer divisions truncate, as in C, and errors of the publications are kept. Where a publication leaves
-something open, the interpretation that favours it is used and documented. Common to all: a pulse is placed in
+something open, the interpretation that favors it is used and documented. Common to all: a pulse is placed in
 the middle of its period, where it belongs on the ideal curve.
 """
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a published method makes of a move: the times of its pulses."""
+"""A move by a published method: the times of its pulses."""
 
 from dataclasses import dataclass
 

@@ -53,7 +53,7 @@ def index(alpha: float, n: int, half: int) -> int:
 
 @dataclass(frozen=True)
 class _Runs:
-    """So many pulses of so many timer clocks each, one after the other; `last` is the last frequency."""
+    """Groups of pulses of equal length in timer clocks, in order; `last` is the last frequency."""
 
     periods: list[int]
     counts: list[int]

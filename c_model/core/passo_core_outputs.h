@@ -139,7 +139,7 @@ uint32_t passo_outputs_state(const struct passo_outputs_unit *outputs);
 bool passo_outputs_steady(const struct passo_outputs_unit *outputs, const struct passo_outputs_wires *wires);
 void passo_outputs_skip(struct passo_outputs_unit *outputs, uint64_t clocks);
 
-/* Whether the word of a register of the outputs names an axis that is not there. */
+/* Whether the word of a register of the outputs names an axis that the core lacks. */
 bool passo_output_registers_object(uint8_t address, uint32_t data, uint8_t axes);
 void passo_output_registers_reset(struct passo_output_registers *registers);
 void passo_output_registers_clock(

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * What the inputs of all channels share: the tick of the filter, e-stop, watchdog. See rtl/passo_machine.v,
+ * Shared by the inputs of all channels: the tick of the filter, e-stop, watchdog. See rtl/passo_machine.v,
  * rtl/passo_estop.v and rtl/passo_watchdog.v.
  */
 #include "passo_model.h"
@@ -41,7 +41,7 @@ static void clock_watchdog(struct passo_machine_unit *machine, bool feed, bool m
 	const uint16_t disable_after = machine->watchdog_disable_after;
 	const bool fed = machine->watchdog_fed, stop = machine->watchdog_stop;
 	const bool over = machine->watchdog_count == (stop ? disable_after : stop_after);
-	const bool bites = machine->watchdog_silent && moving && !stop;
+	const bool trips = machine->watchdog_silent && moving && !stop;
 
 	machine->watchdog_fed = feed;
 	machine->watchdog_unit = (machine->watchdog_unit + 1u) % UNIT_CLOCKS;
@@ -51,11 +51,11 @@ static void clock_watchdog(struct passo_machine_unit *machine, bool feed, bool m
 		machine->watchdog_silent = true;
 	if (over && stop && disable_after != 0u)
 		machine->watchdog_disable = true;
-	if (bites)
+	if (trips)
 		machine->watchdog_stop = true;
 	if (fed)
 		machine->watchdog_silent = machine->watchdog_stop = machine->watchdog_disable = false;
-	if (fed || bites) {
+	if (fed || trips) {
 		machine->watchdog_count = 0;
 		machine->watchdog_unit = 0;
 	}
@@ -100,9 +100,9 @@ uint64_t passo_machine_quiet(
 {
 	const bool pressed = machine->estop_pressed;
 	const uint8_t seen = pressed ? 3u : 0u, released = inputs->estop_n ? 3u : 0u;
-	const bool bites = machine->watchdog_silent && moving && !machine->watchdog_stop;
+	const bool trips = machine->watchdog_silent && moving && !machine->watchdog_stop;
 
-	if (machine->watchdog_fed || bites || machine->estop_seen != seen
+	if (machine->watchdog_fed || trips || machine->estop_seen != seen
 	    || machine->estop_released != released || (!inputs->estop_n && !pressed))
 		return 0;
 	return watchdog_quiet(machine);

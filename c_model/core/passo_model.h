@@ -345,7 +345,7 @@ struct passo_inputs_unit {
 	bool probe_inverted;
 };
 
-/* What the inputs of all channels share; see rtl/passo_machine.v. */
+/* Shared by the inputs of all channels; see rtl/passo_machine.v. */
 struct passo_machine_unit {
 	uint16_t filter, count;
 	bool tick;
@@ -532,7 +532,7 @@ void passo_inputs_clock(struct passo_inputs_unit *unit, const struct passo_chann
 /* State after a reset; and the synchronous reset, which keeps the settings. */
 void passo_inputs_reset(struct passo_inputs_unit *unit);
 void passo_inputs_restart(struct passo_inputs_unit *unit, const struct passo_inputs_unit *before);
-/* Whether a word of TRIGGER has no source, or no axis, that is there. */
+/* Whether a word of TRIGGER names a source or an axis that the core does not have. */
 bool passo_trigger_objects(const struct passo_channel *channel, uint32_t data);
 /* `forget`: polarity or filter change with this clock. */
 void passo_trigger_clock(struct passo_trigger *trigger, const struct passo_inputs_unit *unit, uint8_t index,
@@ -565,7 +565,7 @@ void passo_encoder_registers_clock(
     struct passo_channel *channel, const struct passo_bus *bus, const struct passo_channel_wires *wires);
 /* Value of a read-only register of the encoders. */
 uint32_t passo_encoder_registers_value(const struct passo_channel *channel, uint8_t address);
-/* Levels of the indexes as the setups have them, synchronised but not filtered, a bit per axis. */
+/* Levels of the indexes as the setups have them, synchronized but not filtered, a bit per axis. */
 uint8_t passo_encoders_index(const struct passo_channel *channel);
 /* Whether the profile follows and nothing is owed to it: nothing moves. */
 bool passo_encoders_wait(const struct passo_channel *channel);

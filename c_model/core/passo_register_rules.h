@@ -17,7 +17,7 @@ struct passo_rule {
 	bool read, write, push; /* none: there is no such register */
 	bool per_axis;          /* a word for each axis */
 	bool needs_quiet;       /* the channel, for a write */
-	enum passo_part part;   /* it is there only with it */
+	enum passo_part part;   /* it exists only with this */
 	bool nonzero;           /* what may be written */
 	uint32_t defined, maximum;
 };

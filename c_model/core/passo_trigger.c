@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Trigger of a channel: one input, one edge, once. See rtl/passo_trigger.v.
+ * Trigger of a channel: one-shot edge capture. See rtl/passo_trigger.v.
  */
 #include "passo_model.h"
 #include "passo_words.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * What an accepted line does, one action after the other.
+ * The actions of an accepted line, one after the other.
  */
 #include "passo_gcode_private.h"
 #include "passo_math.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Each corner is the start turned about the centre by its share of the sweep, so errors do not add up.
+ * Each corner is the start turned about the center by its share of the sweep, so errors do not add up.
  */
 #include "passo_gcode_arc.h"
 
@@ -35,7 +35,7 @@ static uint64_t times_root(uint64_t length, struct passo_u128 a, struct passo_u1
 	    passo_isqrt128(passo_u128_shift_left(b, shift)));
 }
 
-enum passo_gcode_error passo_gcode_arc_centre(
+enum passo_gcode_error passo_gcode_arc_center(
     struct passo_gcode_vector chord, int64_t radius, bool clockwise, struct passo_gcode_vector *offset)
 {
 	const uint64_t x = magnitude(chord.x), y = magnitude(chord.y), twice = 2 * magnitude(radius);
@@ -46,7 +46,7 @@ enum passo_gcode_error passo_gcode_arc_centre(
 		return PASSO_GCODE_TARGET;
 	if (passo_u128_less(diameter, square))
 		return PASSO_GCODE_RADIUS;
-	/* the centre is beside the middle of the chord: to its left, counterclockwise and the shorter way */
+	/* the center is beside the middle of the chord: to its left, counterclockwise and the shorter way */
 	const struct passo_u128 rest = passo_u128_subtract(diameter, square);
 	const int64_t aside_x = (int64_t)times_root(x, rest, square),
 		      aside_y = (int64_t)times_root(y, rest, square);
@@ -83,7 +83,7 @@ static uint32_t count_chords(uint64_t radius, uint64_t arc, uint64_t tolerance)
 	return chords > UINT32_MAX ? UINT32_MAX : (uint32_t)chords;
 }
 
-/* Length of a path that turns and moves along the other axes at once. */
+/* Length of a path that turns and moves along the other axes simultaneously. */
 static uint64_t helix(const struct passo_gcode_arc *arc, uint64_t turned)
 {
 	struct passo_u128 sum = passo_multiply(turned, turned);
@@ -107,7 +107,7 @@ enum passo_gcode_error passo_gcode_arc_begin(
 	};
 
 	arc->radial = (struct passo_gcode_vector){-offset.x, -offset.y};
-	arc->centre =
+	arc->center =
 	    (struct passo_gcode_vector){arc->start[first] + offset.x, arc->start[second] + offset.y};
 	arc->radius = passo_gcode_length(offset);
 	if (arc->radius > (uint64_t)PASSO_GCODE_COORDINATE_MAX
@@ -137,8 +137,8 @@ bool passo_gcode_arc_next(struct passo_gcode_arc *arc, int64_t *corner)
 		    passo_gcode_unit_vector(arc->clockwise ? 0 - turned : turned);
 		const struct passo_gcode_vector at = passo_gcode_rotate(arc->radial, unit);
 
-		corner[arc->plane.first] = arc->centre.x + at.x;
-		corner[arc->plane.second] = arc->centre.y + at.y;
+		corner[arc->plane.first] = arc->center.x + at.x;
+		corner[arc->plane.second] = arc->center.y + at.y;
 	}
 	return true;
 }

@@ -24,13 +24,13 @@ struct passo_gcode_arc {
 	uint64_t sweep;  /* fraction of a turn, UQ1.63: up to 1 */
 	uint64_t length; /* nm, with the motion of the other axes */
 	uint64_t radius;
-	struct passo_gcode_vector radial, centre; /* radial: from the center to the start; nm */
+	struct passo_gcode_vector radial, center; /* radial: from the center to the start; nm */
 	int64_t start[PASSO_GCODE_AXES_MAX], target[PASSO_GCODE_AXES_MAX];
 };
 
 /* Converts a radius (negative: the longer arc) to the offset of the center from the start. Errors: TARGET
  * (the same point), RADIUS. */
-enum passo_gcode_error passo_gcode_arc_centre(
+enum passo_gcode_error passo_gcode_arc_center(
     struct passo_gcode_vector chord, int64_t radius, bool clockwise, struct passo_gcode_vector *offset);
 
 /* Prepares the segments of an arc whose plane, clockwise, axes, start and target are set. Start and end in

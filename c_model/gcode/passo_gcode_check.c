@@ -24,7 +24,7 @@ static int64_t whole_of(const struct passo_gcode_check *check, char letter)
 	return value_of(check, letter) / PASSO_GCODE_MILLION;
 }
 
-/* Nanometres of millionths of an inch, to the nearest; 25.4 is 127 / 5. */
+/* Nanometers of millionths of an inch, to the nearest; 25.4 is 127 / 5. */
 static int64_t from_inches(int64_t value)
 {
 	return (127 * value + (value < 0 ? -2 : 2)) / 5;

@@ -54,7 +54,7 @@ static int64_t offset_along(const struct passo_gcode_check *check, unsigned axis
 	return passo_gcode_in_range(offset) ? offset : PASSO_GCODE_COORDINATE_MAX + 1;
 }
 
-static enum passo_gcode_error find_centre(
+static enum passo_gcode_error find_center(
     struct passo_gcode_check *check, const struct passo_gcode_arc *arc, struct passo_gcode_vector *offset)
 {
 	const unsigned first = arc->plane.first, second = arc->plane.second;
@@ -66,7 +66,7 @@ static enum passo_gcode_error find_centre(
 
 		if (!passo_gcode_in_range(radius))
 			return PASSO_GCODE_RADIUS;
-		return passo_gcode_arc_centre(chord, radius, arc->clockwise, offset);
+		return passo_gcode_arc_center(chord, radius, arc->clockwise, offset);
 	}
 	const bool given =
 	    (check->block.words & (PASSO_GCODE_WORD('I' + (int)first) | PASSO_GCODE_WORD('I' + (int)second)))
@@ -98,7 +98,7 @@ static enum passo_gcode_error check_arc(struct passo_gcode_check *check)
 		arc->start[axis] = check->gcode->position[axis];
 		arc->target[axis] = check->job->destination[axis];
 	}
-	const enum passo_gcode_error error = find_centre(check, arc, &offset);
+	const enum passo_gcode_error error = find_center(check, arc, &offset);
 	if (error != PASSO_GCODE_OK)
 		return error;
 	check->job->turns = true;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Unsigned 128-bit arithmetic and square roots for targets that have neither.
  *
- * Plain C11: no compiler extensions, no floating point, no heap, no undefined behaviour for any argument.
+ * Plain C11: no compiler extensions, no floating point, no heap, no undefined behavior for any argument.
  */
 #ifndef PASSO_MATH_H
 #define PASSO_MATH_H

@@ -6,7 +6,7 @@
 
 #include "passo_path_private.h"
 
-/* A line that takes longer than so many can be sent in is not merged. */
+/* A line that takes longer than this number can be sent in is not merged. */
 #define LINES_MERGED 16u
 
 static struct passo_path_item *newest(const struct passo_path_planner *path)

@@ -9,7 +9,7 @@
 #include "passo_path_private.h"
 #include "passo_shapes.h"
 
-/* Most substeps per mm, so that lines of four metres have less than 2^30. */
+/* Most substeps per mm, so that lines of four meters have less than 2^30. */
 #define SUBSTEPS_PER_MM_MAX (UINT64_C(1) << 18)
 /* Fewest substeps per step. */
 #define OVERSAMPLING_MIN 2u

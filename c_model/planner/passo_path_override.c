@@ -29,7 +29,7 @@ void passo_path_limit(struct passo_path_planner *path, uint32_t index)
 		before->top = passo_path_smaller(before->top, passo_path_larger(before->bend, item->bend));
 }
 
-/* Plans anew what the ramps have not passed. */
+/* Replans the lines that no ramp has passed. */
 static void plan_anew(struct passo_path_planner *path)
 {
 	path->open = false;

@@ -11,7 +11,7 @@
  */
 #include "passo_path_private.h"
 
-/* Lines that may follow a long one at once, at most. */
+/* Most lines that may follow a long one immediately. */
 #define BURST 16u
 
 /* The room for a frame is seen by one poll and used by the next, and a frame of lines may be under way then:
@@ -172,7 +172,7 @@ static struct passo_path_aim aim_at(
 	return (struct passo_path_aim){kind, length, passo_path_square_of(velocity), slope, .plain = true};
 }
 
-/* A ramp of so many ticks, after which the path could go on for `next`. Length 0: there is none. */
+/* A ramp of `ticks` ticks, after which the path could continue for `next`. Length 0: there is none. */
 static struct passo_path_aim calm(
     const struct passo_path_planner *path, uint64_t ticks, uint64_t next, enum passo_path_need need)
 {

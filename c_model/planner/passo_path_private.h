@@ -28,7 +28,7 @@
 /* Longest shaped ramp. */
 #define PASSO_PATH_SHAPED_TICKS_MAX (UINT32_C(1) << 20)
 
-/* The path comes to rest from a velocity that the acceleration makes in so many ticks. */
+/* The path comes to rest from a velocity that the acceleration reaches in this number of ticks. */
 #define PASSO_PATH_LANDING_TICKS 2u
 
 /* A straight part of the profile: the square of the velocity changes evenly over the path. */
@@ -223,7 +223,7 @@ void passo_path_bend(const struct passo_path_planner *path, const int64_t *curva
 /* Change of the square over a length (UQ32.32 substeps); saturates. */
 uint64_t passo_path_gain(uint64_t slope, uint64_t length);
 
-/* Change of the velocity, UQ0.48, in so many ticks. */
+/* Change of the velocity, UQ0.48, in `ticks` ticks. */
 uint64_t passo_path_change(const struct passo_path_planner *path, uint64_t slope, uint64_t ticks);
 
 /* Fills in the geometry and the limits of a line, and remembers it as the last one; *substeps is 0 if it is
@@ -269,7 +269,7 @@ void passo_path_limit(struct passo_path_planner *path, uint32_t index);
 /* Ticks over a length (UQ32.32 substeps) at the mean of two velocities, whose sum is given, rounded down. */
 uint64_t passo_path_ticks_over(const struct passo_path_planner *path, uint64_t length, uint64_t speeds);
 
-/* Length, UQ32.32 substeps, in so many ticks at the mean of two velocities, whose sum is given. */
+/* Length, UQ32.32 substeps, of `ticks` ticks at the mean of two velocities, whose sum is given. */
 uint64_t passo_path_length_in(const struct passo_path_planner *path, uint64_t speeds, uint64_t ticks);
 
 /* The newest line is entered when the next one is known, or when it is the last; the one before it when it
@@ -360,7 +360,7 @@ bool passo_path_is_shaped(const struct passo_path_planner *path, const struct pa
 struct passo_path_aim passo_path_at_pace(
     const struct passo_path_planner *path, const struct passo_path_aim *aim, enum passo_path_need need);
 
-/* Ticks that are lacking until the next `count` ramps may be over, if they last so many without. */
+/* Ticks missing until the next `count` ramps may end, if they last `ticks` as they are. */
 uint32_t passo_path_pace_need(const struct passo_path_planner *path, uint64_t ticks, unsigned count);
 
 /* A motion begins; a ramp was made; a line is added. */

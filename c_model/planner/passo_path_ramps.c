@@ -7,11 +7,11 @@
  */
 #include "passo_path_private.h"
 
-/* While more lines may come, the reserve is divided into so many ramps. */
+/* While more lines may come, the reserve is divided into this number of ramps. */
 #define RAMPS_PER_RESERVE 4u
 
 /* The ramps have moved on by a distance; in a path that goes on they pass the ends of lines. A ramp can be
- * beyond the end of the path only if the path lasts less than a tick: then it rests at once. */
+ * beyond the end of the path only if the path lasts less than a tick: then it rests immediately. */
 static void advance(struct passo_path_planner *path, uint64_t distance)
 {
 	path->offset += (int64_t)distance;
@@ -55,7 +55,8 @@ static void come_to_rest(struct passo_path_planner *path, bool *last)
 	path->ramps_end = item->last;
 }
 
-/* A ramp to a small velocity, which covers exactly what is left of the line; a ramp to 0 follows at once. */
+/* A ramp to a small velocity, which covers exactly what is left of the line; a ramp to 0 follows immediately.
+ */
 static void land(struct passo_path_planner *path, const struct passo_path_aim *aim, uint32_t ticks,
     struct passo_ramp *ramp)
 {

@@ -152,7 +152,7 @@ struct passo_path_planner {
 	/* the pace */
 	uint32_t polls;
 	bool unrounded;
-	uint32_t pace, paced;                  /* ticks of so many ramps, at least */
+	uint32_t pace, paced;                  /* least ticks of a number of ramps */
 	uint32_t recent[PASSO_PATH_PACED - 1]; /* ticks of the last ramps */
 	uint32_t line_clocks, line_burst;      /* of a line, at least; how many may be in advance */
 	enum passo_shape shape;

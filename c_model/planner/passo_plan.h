@@ -128,7 +128,7 @@ enum passo_plan_error passo_plan_turn(
 struct passo_turning {
 	uint8_t axis;
 	uint32_t steps_per_turn; /* steps per revolution: full steps times microsteps */
-	bool backwards;          /* negative direction */
+	bool backward;           /* negative direction */
 	uint64_t top_rpm;        /* UQ32.32: upper limit of all speeds of this rotation */
 	uint64_t minimum_rpm;    /* UQ32.32: initial and final speed */
 	uint64_t acceleration;   /* UQ32.32 steps/s^2, for deceleration as well */
@@ -148,7 +148,7 @@ enum passo_plan_error passo_plan_turning_stop(const struct passo_machine *machin
  * endless line, but its ramps always end at rest at or before the target. */
 struct passo_course {
 	uint8_t axis;
-	bool backwards;        /* negative direction */
+	bool backward;         /* negative direction */
 	uint64_t top_speed;    /* UQ32.32 steps/s: upper limit of all speeds of this line */
 	uint64_t speed;        /* UQ32.32 steps/s, at most top_speed */
 	uint64_t acceleration; /* UQ32.32 steps/s^2, for deceleration as well */

@@ -34,7 +34,7 @@ static enum passo_plan_error start(struct passo_draft *draft, int32_t steps[PASS
 {
 	if (course->axis >= machine->axes || course->axis >= PASSO_AXES_MAX)
 		return PASSO_PLAN_BAD_AXIS;
-	steps[course->axis] = course->backwards ? -1 : 1;
+	steps[course->axis] = course->backward ? -1 : 1;
 	enum passo_plan_error error = passo_draft_start(draft, machine, steps, PASSO_PROFILE_LINEAR);
 	if (error != PASSO_PLAN_OK)
 		return error;
@@ -113,7 +113,7 @@ enum passo_plan_error passo_plan_course(const struct passo_machine *machine,
 	struct passo_plan made = {
 	    .line = {.endless = true,
 		.substeps = count * draft.oversampling,
-		.directions = (uint8_t)(course->backwards ? 1u << course->axis : 0u)},
+		.directions = (uint8_t)(course->backward ? 1u << course->axis : 0u)},
 	    .oversampling = draft.oversampling,
 	    .velocity_peak = peak,
 	    .accelerate_ticks = (uint32_t)ramp,

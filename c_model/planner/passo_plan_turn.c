@@ -57,7 +57,7 @@ static uint32_t start_turning(struct passo_draft *draft, int32_t steps[PASSO_AXE
 		return PASSO_PLAN_BAD_AXIS;
 	if (turning->steps_per_turn == 0)
 		return PASSO_PLAN_NO_STEPS_PER_TURN;
-	steps[turning->axis] = turning->backwards ? -1 : 1;
+	steps[turning->axis] = turning->backward ? -1 : 1;
 	enum passo_plan_error error = passo_draft_start(draft, machine, steps, PASSO_PROFILE_LINEAR);
 	if (error != PASSO_PLAN_OK)
 		return error;
@@ -127,7 +127,7 @@ enum passo_plan_error passo_plan_turning_start(const struct passo_machine *machi
 	    .velocity_peak = velocity_of(&draft, turning, rpm),
 	};
 	made.line.steps[turning->axis] = count;
-	made.line.directions = (uint8_t)(turning->backwards ? 1u << turning->axis : 0u);
+	made.line.directions = (uint8_t)(turning->backward ? 1u << turning->axis : 0u);
 	if (made.velocity_start > 0)
 		passo_plan_add_ramp(&made, PASSO_SHAPE_LINEAR, false, made.velocity_start, 0);
 	refused = add_change(&made, &draft, turning, made.velocity_start, made.velocity_peak);

@@ -245,14 +245,14 @@
 #define PASSO_CHANNEL_RATE_TARGET_RESET   0x10000u
 #define PASSO_CHANNEL_RATE_TARGET_DEFINED 0x0001FFFFu
 
-/* Channel: Rate slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1. */
+/* Channel: Rate slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = immediately; 0 counts as 1. */
 #define PASSO_CHANNEL_RATE_SLEW         0x02u
 #define PASSO_CHANNEL_RATE_SLEW_LSB     0u
 #define PASSO_CHANNEL_RATE_SLEW_BITS    17u
 #define PASSO_CHANNEL_RATE_SLEW_RESET   0x00400u
 #define PASSO_CHANNEL_RATE_SLEW_DEFINED 0x0001FFFFu
 
-/* Channel: Stop slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1. */
+/* Channel: Stop slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = immediately; 0 counts as 1. */
 #define PASSO_CHANNEL_STOP_SLEW         0x03u
 #define PASSO_CHANNEL_STOP_SLEW_LSB     0u
 #define PASSO_CHANNEL_STOP_SLEW_BITS    17u
@@ -336,8 +336,8 @@
 #define PASSO_CHANNEL_INPUT_FLAGS_ALARM_BITS       8u
 #define PASSO_CHANNEL_INPUT_FLAGS_ALARM_RESET      0x00u
 
-/* Channel: Clear input flags. Each bit written as 1 clears a flag of INPUT_FLAGS; bits of axes that are not
- * there do nothing. */
+/* Channel: Clear input flags. Each bit written as 1 clears a flag of INPUT_FLAGS; bits of axes that the
+ * core lacks do nothing. */
 #define PASSO_CHANNEL_INPUT_CLEAR                  0x12u
 #define PASSO_CHANNEL_INPUT_CLEAR_LIMIT_LOW_LSB    0u
 #define PASSO_CHANNEL_INPUT_CLEAR_LIMIT_LOW_BITS   8u
@@ -428,7 +428,7 @@
 #define PASSO_CHANNEL_RASTER_BITS    32u
 #define PASSO_CHANNEL_RASTER_DEFINED 0xFFFFFFFFu
 
-/* Channel: Output levels. Sets the digital outputs at once, until a line changes them. */
+/* Channel: Output levels. Sets the digital outputs immediately, until a line changes them. */
 #define PASSO_CHANNEL_OUTPUT_LEVELS              0x30u
 #define PASSO_CHANNEL_OUTPUT_LEVELS_LEVELS_LSB   0u
 #define PASSO_CHANNEL_OUTPUT_LEVELS_LEVELS_BITS  8u
@@ -680,7 +680,7 @@
 #define PASSO_ENCODER_RATIO_RESET   0x00010000u
 #define PASSO_ENCODER_RATIO_DEFINED 0xFFFFFFFFu
 
-/* Encoder: Following error limit. Error from which on the axis is too far from its encoder. */
+/* Encoder: Following error limit. Following error at which the axis is exceeded. */
 #define PASSO_ENCODER_LIMIT         0x2u
 #define PASSO_ENCODER_LIMIT_LSB     0u
 #define PASSO_ENCODER_LIMIT_BITS    16u
@@ -770,7 +770,7 @@ enum passo_cause {
 	PASSO_CAUSE_TRIGGER         = 8,  /* The trigger fired, and its action is a stop. */
 	PASSO_CAUSE_WATCHDOG        = 9,  /* No good frame came for too long while a motion ran. */
 	PASSO_CAUSE_ESTOP           = 10, /* The e-stop input became active. */
-	PASSO_CAUSE_FOLLOWING_ERROR = 11  /* An axis was too far from its encoder. */
+	PASSO_CAUSE_FOLLOWING_ERROR = 11  /* The following error of an axis exceeded its limit. */
 };
 #define PASSO_CAUSE_NAMES \
 	{[0] = "NONE", [1] = "STOP", [2] = "ABORT", [3] = "LINE_UNDERRUN", [4] = "RAMP_UNDERRUN", \

@@ -340,8 +340,8 @@ static inline struct passo_watchdog passo_unpack_watchdog(uint32_t word)
 struct passo_channel_command {
 	bool zero;  /* Set the positions of the channel's axes to 0. */
 	bool clear; /* Clear cause and lost steps and leave STOPPED. */
-	bool abort; /* Hard stop: STOPPED at once, waiting steps dropped, no new pulse begins. */
-	bool stop;  /* Soft stop: rate to 0 by STOP_SLEW, then STOPPED. In IDLE, PREPARE and ARMED: STOPPED at once. */
+	bool abort; /* Hard stop: STOPPED immediately, waiting steps dropped, no new pulse begins. */
+	bool stop;  /* Soft stop: rate to 0 by STOP_SLEW, then STOPPED. In IDLE, PREPARE and ARMED: STOPPED immediately. */
 };
 
 static inline uint32_t passo_pack_channel_command(const struct passo_channel_command *word)
@@ -466,7 +466,7 @@ static inline struct passo_channel_input_flags passo_unpack_channel_input_flags(
 	};
 }
 
-/* Clear input flags. Each bit written as 1 clears a flag of INPUT_FLAGS; bits of axes that are not there do nothing. */
+/* Clear input flags. Each bit written as 1 clears a flag of INPUT_FLAGS; bits of axes that the core lacks do nothing. */
 struct passo_channel_input_clear {
 	uint8_t alarm;      /* alarm. */
 	uint8_t home;       /* home. */

@@ -123,7 +123,7 @@ class PushBus:
         await self.commit(words)
 
     async def _strobe(self, signal: Signal, word: int, before: int) -> None:
-        # address and data stand on the bus as many clocks before the strobe, and stay there; only a check
+        # address and data are stable as many clocks before the strobe, and stay there; only a check
         # tells the highest bit
         self.dut.select.value = 1
         self.dut.bus_data.value = word

@@ -61,7 +61,7 @@ class Queue(Bench):
                 assert index == UNUSED or read(dut.half) == half ^ inverted(ramps[0], index // 2), index
 
     async def take_all(self, ramps: Sequence[list[int]]) -> None:
-        """Take all that are there, one after the other, each checked before."""
+        """Take all that are queued, one after the other, each checked before."""
         for taken in range(len(ramps)):
             await self.check(ramps[taken:])
             await self.strobe("take")

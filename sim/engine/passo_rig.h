@@ -28,7 +28,7 @@ extern "C" {
 struct passo_rig_wire {
 	uint8_t input, bit; /* enum passo_input, and which of its bits */
 	bool inverted;      /* active low */
-	bool is_switch;     /* it is active from position `at` of `axis` on, upwards if `above` */
+	bool is_switch;     /* it is active from position `at` of `axis` on, upward if `above` */
 	bool above;
 	uint8_t axis;
 	int64_t at, hysteresis;

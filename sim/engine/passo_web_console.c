@@ -44,7 +44,7 @@ static int pass(bool room)
 	}
 }
 
-/* Executes the line in the buffer; 0: the motion stands. */
+/* Executes the line in the buffer; 0: nothing moves. */
 EXPORT("type") int web_type(uint32_t length)
 {
 	passo_terminal_type(terminal, line, length);

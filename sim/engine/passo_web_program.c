@@ -13,7 +13,7 @@ enum {
 	LOOK_AHEAD = 48,
 	AXES = 6,
 	SLEWS_PER_SECOND = 20, /* of hold and stop, from full speed */
-	NANOMETRES = 1000000,
+	NANOMETERS = 1000000,
 };
 
 /* The machine as the page gives it, in the order of sim/passo/web.py. */
@@ -51,7 +51,7 @@ static void read_settings(void)
 	    .path = {.machine = {.clock_hz = (uint32_t)machine->clock_hz, .tick_log2 = 7, .axes = axes},
 		.junction_deviation = q32(machine->junction_deviation),
 		.profile = (enum passo_profile)machine->profile},
-	    .gcode = {.axes = axes, .arc_tolerance = (uint32_t)(machine->arc_tolerance * NANOMETRES + 0.5)}};
+	    .gcode = {.axes = axes, .arc_tolerance = (uint32_t)(machine->arc_tolerance * NANOMETERS + 0.5)}};
 	for (unsigned i = 0; i < axes; i++)
 		web.settings.path.axis[i] =
 		    (struct passo_path_axis){.steps_per_mm = q32(machine->axis[i].steps_per_mm),

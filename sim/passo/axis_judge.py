@@ -131,7 +131,7 @@ def faults(found: Sequence[Share]) -> list[str]:
 
 @dataclass(frozen=True)
 class Places:
-    """Times and places of an axis: between two steps of one direction it moves evenly, else it stands."""
+    """Times and places of an axis: between two steps of one direction it moves evenly, else it rests."""
 
     time: np.ndarray
     place: np.ndarray

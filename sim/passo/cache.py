@@ -25,7 +25,7 @@ ROOM = 1 << 20  # bytes that must be free after a build: some tools do not notic
 
 
 def cached(name: str, inputs: Iterable[Path], flags: Sequence[str], make: Callable[[Path], None]) -> Path:
-    """The folder lib/NAME-HASH below `paths.build`, which `make` fills from these inputs if it is not whole.
+    """The folder lib/NAME-HASH below `paths.build`, which `make` fills from these inputs if it is incomplete.
 
     Older folders of the same name are deleted. Raises BuildError.
     """
@@ -101,7 +101,7 @@ def _damage(folder: Path) -> str | None:
         whole = listed == _digests(folder)
     except (OSError, ValueError):
         whole = False
-    return _unloadable(folder) if whole else "is not whole"
+    return _unloadable(folder) if whole else "is incomplete"
 
 
 def _digests(folder: Path) -> dict[str, str]:

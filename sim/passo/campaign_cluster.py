@@ -69,7 +69,8 @@ def running_cluster(address: str) -> Iterator[Any]:
             try:
                 client.wait_for_workers(1, timeout=PATIENCE)
             except TimeoutError:
-                raise BadInputError(f"--scheduler {address}: the cluster has no workers") from None
+                lacks = "the cluster has no workers: start 'dask worker'"
+                raise BadInputError(f"--scheduler {address}: {lacks}") from None
             yield client
 
 
@@ -87,7 +88,7 @@ def _check_address(address: str) -> None:
     try:
         kind = asyncio.run(wait())
     except TimeoutError:
-        raise BadInputError(f"--scheduler {address}: no scheduler answers") from None
+        raise BadInputError(f"--scheduler {address}: no scheduler answers: start 'dask scheduler'") from None
     except (OSError, ValueError) as error:
         reason = str(error.__cause__ or error).partition("\n")[0]
         raise BadInputError(f"--scheduler {address}: {reason}") from None

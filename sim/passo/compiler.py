@@ -55,7 +55,7 @@ def call(command: Sequence[str | Path], text: str | None = None) -> str:
     try:
         done = subprocess.run(words, env=environment(), input=text, capture_output=True, text=True)
     except FileNotFoundError:
-        raise BuildError(f"there is no '{words[0]}': on Debian, install g++, make and perl") from None
+        raise BuildError(f"'{words[0]}' not found: on Debian, install g++, make and perl") from None
     if done.returncode:
         raise failed(words[0], done.stderr or done.stdout)
     return done.stdout

@@ -8,7 +8,7 @@ from typing import Any
 from passo.failure import Failure
 from passo.native import ffi, planner
 
-NANOMETRES = 1_000_000  # per millimeter
+NANOMETERS = 1_000_000  # per millimeter
 AXIS_LETTERS = "XYZABC"
 
 
@@ -31,7 +31,7 @@ class GcodeSettings:
 
     def struct(self) -> Any:
         """The `struct passo_gcode_settings`."""
-        tolerance = max(1, round(self.arc_tolerance * NANOMETRES))
+        tolerance = max(1, round(self.arc_tolerance * NANOMETERS))
         return ffi().new("struct passo_gcode_settings *", (self.axes, tolerance, self.spindle_maximum, False))
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from passo.driver import Driver
 from passo.engine import Engine
 from passo.failure import BadInputError
-from passo.gcode import NANOMETRES, Gcode, GcodeError, has_words, lines
+from passo.gcode import NANOMETERS, Gcode, GcodeError, has_words, lines
 from passo.machine_file import MachineFile
 from passo.native import planner
 from passo.pair_engine import PairEngine
@@ -62,7 +62,7 @@ class Played:
             found.append(f"{self.drained} substeps were missing at the end of a ramp")
         for axis, settings in enumerate(self.machine.settings.axes):
             made = int(self.positions[axis][-1]) if len(self.positions[axis]) else 0
-            exact = self.part.end[axis] / NANOMETRES * float(settings.steps_per_mm)
+            exact = self.part.end[axis] / NANOMETERS * float(settings.steps_per_mm)
             if abs(made - exact) > 0.5 + 1e-6 or self.end[axis] != made:
                 found.append(
                     f"axis {axis} made {made} steps and counted {self.end[axis]}, wanted are {exact:g}"

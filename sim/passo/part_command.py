@@ -9,7 +9,7 @@ from typing import Any
 from passo.axis_judge import Share, faults
 from passo.console import progress
 from passo.failure import BadInputError
-from passo.gcode import AXIS_LETTERS, NANOMETRES
+from passo.gcode import AXIS_LETTERS, NANOMETERS
 from passo.machine_file import MachineFile, read_machine
 from passo.output import empty_folder, write_json
 from passo.part import Part, Played, play_part, read_part
@@ -75,7 +75,7 @@ def _summary(
         "motions": len(played.motions),
         "matched_edges": played.matched_edges,
         "end": {
-            "millimetres": [nanometres / NANOMETRES for nanometres in part.end[: len(axes)]],
+            "millimetres": [nanometres / NANOMETERS for nanometres in part.end[: len(axes)]],
             "steps": played.end,
         },
         "pulses": [len(clocks) for clocks in played.clocks],

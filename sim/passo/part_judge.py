@@ -2,7 +2,7 @@
 """Checks the pulses of a part against the limits of its machine."""
 
 from passo.axis_judge import NAMES, Marks, Share, shares
-from passo.gcode import NANOMETRES, Gcode
+from passo.gcode import NANOMETERS, Gcode
 from passo.machine_file import MachineFile
 from passo.native import planner
 from passo.part import Part, Played
@@ -17,7 +17,7 @@ def path_of(part: Part, machine: MachineFile) -> list[Line]:
         gcode.execute(line)
         for action in gcode.actions():
             if action.kind == planner().PASSO_GCODE_LINE:
-                found.append(([nm / NANOMETRES for nm in action.target[0:axes]], None))
+                found.append(([nm / NANOMETERS for nm in action.target[0:axes]], None))
     return found
 
 

@@ -74,7 +74,7 @@ def plot_part(played: Played, path: Path) -> None:
 
 
 def _draw_path(figure: plt.Figure, ax: plt.Axes, motion: Motion) -> None:
-    """The first two axes, coloured by the speed."""
+    """The first two axes, colored by the speed."""
     x, y = motion.positions[0], motion.positions[1] if len(motion.positions) > 1 else motion.times
     points = np.stack([x, y], axis=1)
     lines = LineCollection(

@@ -14,7 +14,7 @@ from passo.plan import Q48, Plan
 from passo.run import Run
 from passo.shape import POINTS
 
-EARLY = 0.25  # substeps: the rounding to clocks is centred at full speed
+EARLY = 0.25  # substeps: the rounding to clocks is centered at full speed
 LATE = 1.25  # of any axis; the steps of the leading one are at whole substeps:
 LATE_LEADING = 0.25
 LATENCY = 8  # clocks from the substep to the pin
@@ -165,6 +165,6 @@ def curve_faults(run: Run, axis: int, steps: Steps, places: list[_Place]) -> Ite
         for word, bad in (("early", lead < -EARLY - tolerance), ("late", ~in_time & ~waited[own])):
             if (k := _first(bad)) is not None:
                 where = f"axis {axis}, step {first + k}, clock {clocks[first + k]}"
-                yield Fault("curve", f"{where}: {word}, {abs(lead[k]):.3f} substeps from its place")
+                yield Fault("curve", f"{where}: {word}, {abs(lead[k]):.3f} substeps from its position")
         first += count
         begin += plan.clocks

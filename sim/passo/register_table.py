@@ -51,7 +51,7 @@ class Register(Fields):
     word: int  # of its block
     count: int
     fields: tuple[Field, ...]
-    part: str = ""  # the parameter without which it is not there: inputs, encoders or outputs
+    part: str = ""  # the parameter that it needs: inputs, encoders or outputs
 
     @property
     def known(self) -> int:

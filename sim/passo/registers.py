@@ -59,7 +59,7 @@ class Cause(DescribedEnum):
     TRIGGER = 8, "The trigger fired, and its action is a stop."
     WATCHDOG = 9, "No good frame came for too long while a motion ran."
     ESTOP = 10, "The e-stop input became active."
-    FOLLOWING_ERROR = 11, "An axis was too far from its encoder."
+    FOLLOWING_ERROR = 11, "The following error of an axis exceeded its limit."
 
 
 class TriggerSource(DescribedEnum):
@@ -221,8 +221,8 @@ class ChannelCommandWord(Word):
 
     zero: bool = bits(3, 1, "w", False)  # Set the positions of the channel's axes to 0.
     clear: bool = bits(2, 1, "w", False)  # Clear cause and lost steps and leave STOPPED.
-    abort: bool = bits(1, 1, "w", False)  # Hard stop: STOPPED at once, waiting steps dropped, no new pulse begins.
-    stop: bool = bits(0, 1, "w", False)  # Soft stop: rate to 0 by STOP_SLEW, then STOPPED. In IDLE, PREPARE and ARMED: STOPPED at once.
+    abort: bool = bits(1, 1, "w", False)  # Hard stop: STOPPED immediately, waiting steps dropped, no new pulse begins.
+    stop: bool = bits(0, 1, "w", False)  # Soft stop: rate to 0 by STOP_SLEW, then STOPPED. In IDLE, PREPARE and ARMED: STOPPED immediately.
 
 
 @dataclass(frozen=True)
@@ -651,14 +651,14 @@ CHANNEL_RATE_TARGET_BITS = 17
 CHANNEL_RATE_TARGET_RESET = 0x10000
 CHANNEL_RATE_TARGET_DEFINED = 0x0001FFFF
 
-# Channel: Rate slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1.
+# Channel: Rate slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = immediately; 0 counts as 1.
 CHANNEL_RATE_SLEW = 0x02
 CHANNEL_RATE_SLEW_LSB = 0
 CHANNEL_RATE_SLEW_BITS = 17
 CHANNEL_RATE_SLEW_RESET = 0x00400
 CHANNEL_RATE_SLEW_DEFINED = 0x0001FFFF
 
-# Channel: Stop slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1.
+# Channel: Stop slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = immediately; 0 counts as 1.
 CHANNEL_STOP_SLEW = 0x03
 CHANNEL_STOP_SLEW_LSB = 0
 CHANNEL_STOP_SLEW_BITS = 17
@@ -742,8 +742,8 @@ CHANNEL_INPUT_FLAGS_ALARM_LSB = 24
 CHANNEL_INPUT_FLAGS_ALARM_BITS = 8
 CHANNEL_INPUT_FLAGS_ALARM_RESET = 0x00
 
-# Channel: Clear input flags. Each bit written as 1 clears a flag of INPUT_FLAGS; bits of axes that are not
-# there do nothing.
+# Channel: Clear input flags. Each bit written as 1 clears a flag of INPUT_FLAGS; bits of axes that the
+# core lacks do nothing.
 CHANNEL_INPUT_CLEAR = 0x12
 CHANNEL_INPUT_CLEAR_LIMIT_LOW_LSB = 0
 CHANNEL_INPUT_CLEAR_LIMIT_LOW_BITS = 8
@@ -834,7 +834,7 @@ CHANNEL_RASTER_LSB = 0
 CHANNEL_RASTER_BITS = 32
 CHANNEL_RASTER_DEFINED = 0xFFFFFFFF
 
-# Channel: Output levels. Sets the digital outputs at once, until a line changes them.
+# Channel: Output levels. Sets the digital outputs immediately, until a line changes them.
 CHANNEL_OUTPUT_LEVELS = 0x30
 CHANNEL_OUTPUT_LEVELS_LEVELS_LSB = 0
 CHANNEL_OUTPUT_LEVELS_LEVELS_BITS = 8
@@ -1086,7 +1086,7 @@ ENCODER_RATIO_BITS = 32
 ENCODER_RATIO_RESET = 0x00010000
 ENCODER_RATIO_DEFINED = 0xFFFFFFFF
 
-# Encoder: Following error limit. Error from which on the axis is too far from its encoder.
+# Encoder: Following error limit. Following error at which the axis is exceeded.
 ENCODER_LIMIT = 0x2
 ENCODER_LIMIT_LSB = 0
 ENCODER_LIMIT_BITS = 16

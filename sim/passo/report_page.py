@@ -53,13 +53,13 @@ def _write(name: str, data: tuple[dict[str, Any], str], path: Path) -> None:
 
 def page(title: str, body: str, scripts: tuple[str, ...] = SCRIPTS) -> str:
     """A page with the styles and scripts in it; `body` comes last."""
-    licence, styles, library = ((FOLDER / name).read_text() for name in UPLOT)
+    notice, styles, library = ((FOLDER / name).read_text() for name in UPLOT)
     source = "\n".join((FOLDER / name).read_text() for name in scripts)
     return (
         (FOLDER / "page.html")
         .read_text()
         .replace("<!-- title -->", html.escape(title))
         .replace("/* styles */", styles + (FOLDER / "page.css").read_text())
-        .replace("/* scripts */", f"/*\nuPlot: {licence}*/\n{library}\n{source}")
+        .replace("/* scripts */", f"/*\nuPlot: {notice}*/\n{library}\n{source}")
         .replace("<!-- body -->", body)
     )

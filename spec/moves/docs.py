@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The forms of a move in the documentation: what stands between markers.
+"""The forms of a move in the documentation: the text between markers.
 
 A marker is <!-- moves: WHAT -->...<!-- /moves -->, where WHAT is one of
 

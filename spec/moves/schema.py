@@ -154,7 +154,7 @@ def read(root: Path) -> Schema:
     for form in forms:
         by_key = form.has("profile") or form.has("shape") or form.has("per_axis")
         _want(by_key or form.profile in data["profiles"], f"form {form.name}: which profile has it?")
-    _want(sum(form.told_by is not None for form in forms) == 2, "two forms are told by their keys")
+    _want(sum(form.told_by is not None for form in forms) == 2, "two forms are recognized by their keys")
     user = data["user"]
     return Schema(constants, data["profiles"], user["name"], user["bank"], user["shaped"], kinds, forms, made)
 
@@ -200,14 +200,14 @@ def _form(
     for entry in (*table["keys"], *every):
         given = {"name": entry} if isinstance(entry, str) else entry
         key = _key(place, {**common.get(given["name"], {}), **given}, kinds, constants, keys)
-        _want(key.name not in keys, f"{place}: {key.name} is there twice")
+        _want(key.name not in keys, f"{place}: {key.name} is defined twice")
         keys[key.name] = key
     rules = []
     for rule in table.get("rules", ()):
         (kind,) = set(rule) - {"key"}
         other = rule[kind] if isinstance(rule[kind], str) else rule["key"]
         _want(kind in ("excludes", "needs", "above_zero"), f"{place}: unknown rule {kind}")
-        _want({rule["key"], other} <= set(keys), f"{place}: a rule for a key that is not there")
+        _want({rule["key"], other} <= set(keys), f"{place}: a rule for a key that does not exist")
         rules.append(Rule(kind, rule["key"], other))
     form = _record(Form, place, {**table, "keys": list(keys.values()), "rules": rules})
     _want(form.told_by in (None, *keys), f"{place}: no key {form.told_by}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Pins in Verilog: what records and plays them."""
+"""Pins in Verilog: their recorder and player."""
 
 from collections.abc import Sequence
 

@@ -136,7 +136,7 @@ def c(source: Source) -> str:
         "\tbool read, write, push; /* none: there is no such register */",
         "\tbool per_axis;          /* a word for each axis */",
         "\tbool needs_quiet;       /* the channel, for a write */",
-        "\tenum passo_part part;   /* it is there only with it */",
+        "\tenum passo_part part;   /* it exists only with this */",
         "\tbool nonzero;           /* what may be written */",
         "\tuint32_t defined, maximum;",
         "};",

@@ -25,7 +25,7 @@ struct passo_values {
 	/* inputs, home, probe, jog */
 	struct passo_console_inputs inputs;
 	uint8_t probe, source, edge, action; /* PASSO_READ_LEVEL, _SOURCE, ... */
-	bool clear, backwards, away, optional;
+	bool clear, backward, away, optional;
 	uint32_t filter_microseconds, watchdog_microseconds, disable_microseconds, timeout_microseconds;
 	int32_t steps[PASSO_AXES_MAX];
 	int32_t distance, position;

@@ -33,7 +33,7 @@ static const struct passo_key TURN_KEYS[] = {
     PASSO_VALUE("top_rpm", top_rpm, NUMBER, "rpm"),
     PASSO_VALUE("minimum_rpm", minimum_rpm, NUMBER, "0"),
     PASSO_VALUE("acceleration", acceleration, NUMBER, NULL),
-    PASSO_VALUE("backwards", on, FLAG, "0"),
+    PASSO_VALUE("backward", on, FLAG, "0"),
     CHANNEL,
 };
 
@@ -82,7 +82,7 @@ static const struct passo_key PROBE_KEYS[] = {
 static const struct passo_key JOG_KEYS[] = {
     PASSO_VALUE("axis", axis, AXIS, "0"),
     PASSO_VALUE("steps", distance, INTEGER, ""),
-    PASSO_VALUE("backwards", backwards, FLAG, "0"),
+    PASSO_VALUE("backward", backward, FLAG, "0"),
     PASSO_VALUE("speed", speed, NUMBER, NULL),
     PASSO_VALUE("top_speed", top_speed, NUMBER, "speed"),
     PASSO_VALUE("acceleration", acceleration, NUMBER, NULL),

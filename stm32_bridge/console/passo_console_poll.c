@@ -50,7 +50,7 @@ static bool is_several(const struct passo_console *console)
 	return passo_commands_channels(console) > 1u;
 }
 
-/* An error of the link, or a reset of the core, is told once for all channels. */
+/* An error of the link, or a reset of the core, is reported once for all channels. */
 static bool is_told(
     const struct passo_console *console, const struct passo_console_channel *channel, enum passo_error error)
 {

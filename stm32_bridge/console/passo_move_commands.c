@@ -90,7 +90,7 @@ bool passo_run_turn(const struct passo_call *call)
 	const struct passo_values *values = call->values;
 	struct passo_turning turning = {.axis = values->axis,
 	    .steps_per_turn = values->steps_per_turn,
-	    .backwards = values->on,
+	    .backward = values->on,
 	    .top_rpm = values->top_rpm,
 	    .minimum_rpm = values->minimum_rpm,
 	    .acceleration = values->acceleration};

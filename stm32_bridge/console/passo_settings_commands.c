@@ -192,7 +192,7 @@ bool passo_run_table(const struct passo_call *call)
 	enum passo_plan_error error;
 
 	if (call->reading->given == 1u || call->reading->given == 2u)
-		return passo_complain(sink, "row and points need each other");
+		return passo_complain(sink, "row and points must be given together");
 	if (call->reading->given != 0u) {
 		memcpy(table->points + row * PASSO_POINTS_PER_LINE, call->values->points,
 		    sizeof call->values->points);

@@ -77,7 +77,7 @@ bool passo_run_jog(const struct passo_call *call)
 {
 	const struct passo_values *values = call->values;
 	const struct passo_jog jog = {.axis = values->axis,
-	    .backwards = values->backwards,
+	    .backward = values->backward,
 	    .steps = values->distance,
 	    .speed = values->speed,
 	    .top_speed = values->top_speed,
@@ -86,8 +86,8 @@ bool passo_run_jog(const struct passo_call *call)
 	enum passo_error error;
 	uint8_t off;
 
-	if (by_distance && values->backwards)
-		return passo_complain(call->reading->sink, "steps and backwards are mutually exclusive");
+	if (by_distance && values->backward)
+		return passo_complain(call->reading->sink, "steps and backward are mutually exclusive");
 	if (by_distance && jog.steps == 0)
 		return passo_complain(call->reading->sink, "steps must not be 0; omit it for an endless jog");
 	if (!passo_check_enabled(call, (uint8_t)(1u << jog.axis), &off))

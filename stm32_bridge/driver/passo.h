@@ -89,7 +89,7 @@ struct passo_axis_memory {
 	uint8_t switches;         /* fitted switches, one bit per enum passo_trigger_source */
 	bool limit_soft;          /* its limit switches stop softly */
 	bool homed;
-	bool backwards; /* direction of the last line that moves it */
+	bool backward; /* direction of the last line that moves it */
 };
 
 /* A target that can change during the motion; see passo_goto.h. */
@@ -222,9 +222,9 @@ struct passo {
 	struct passo_turning turning;
 	struct passo_goto go; /* in progress */
 	/* for a motion whose ramps can be changed */
-	bool backwards; /* its direction */
-	bool has_aim;   /* it has a target, `aim`, in core positions */
-	bool aimed;     /* it ends at or before the target */
+	bool backward; /* its direction */
+	bool has_aim;  /* it has a target, `aim`, in core positions */
+	bool aimed;    /* it ends at or before the target */
 	int32_t aim;
 	uint32_t late; /* longest time in microseconds until the core has a change */
 	struct passo_source source;

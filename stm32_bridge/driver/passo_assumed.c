@@ -54,12 +54,12 @@ void passo_driver_break(struct passo *passo)
 void passo_driver_expect(struct passo *passo, const struct passo_line *line)
 {
 	for (unsigned i = 0; i < passo->machine.axes; i++) {
-		const bool backwards = (line->directions >> i & 1u) != 0u;
-		const uint32_t steps = backwards ? 0u - line->steps[i] : line->steps[i];
+		const bool backward = (line->directions >> i & 1u) != 0u;
+		const uint32_t steps = backward ? 0u - line->steps[i] : line->steps[i];
 		passo->axis[i].expected = (int32_t)((uint32_t)passo->axis[i].expected + steps);
 		if (steps == 0u)
 			continue;
-		passo->axis[i].backwards = backwards;
+		passo->axis[i].backward = backward;
 		passo->movers = (uint8_t)(passo->movers | 1u << i);
 	}
 	if (passo->expects == PASSO_EXPECT_NOTHING)

@@ -16,7 +16,7 @@ enum passo_error passo_driver_check(const struct passo *passo);
 enum passo_error passo_driver_check_axis(const struct passo *passo, uint8_t axis);
 /* Whether an error is a link error. */
 bool passo_driver_is_link_error(enum passo_error error);
-/* Present time in microseconds; 0 without a clock. */
+/* Present time in microseconds; 0 if the port has no clock. */
 uint32_t passo_driver_now(const struct passo *passo);
 /* A timeout in microseconds. It accumulates the time between calls, so it can exceed the range of the
  * microsecond clock. */
@@ -210,7 +210,7 @@ enum passo_error passo_driver_steered(
 /* UQ32.32 steps/s of a velocity, rounded up. */
 uint64_t passo_driver_speed_of(const struct passo *passo, uint64_t velocity);
 /* A motion whose ramps can be changed has been queued; `aim` is null for one without a target. */
-void passo_driver_turns(struct passo *passo, const struct passo_turning *turning, bool backwards,
+void passo_driver_turns(struct passo *passo, const struct passo_turning *turning, bool backward,
     const struct passo_plan *plan, const int32_t *aim);
 /* The snapshot shows a stop: axes that may have lost steps in it are no longer homed. */
 void passo_driver_forget_home(struct passo *passo);

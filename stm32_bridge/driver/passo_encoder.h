@@ -46,7 +46,7 @@ enum passo_error passo_configure_encoder_filter(struct passo *passo, uint64_t cl
 struct passo_encoder_reading {
 	int32_t counts;    /* since the core's reset or passo_zero(); wraps */
 	int64_t speed;     /* Q31.32 counts/s, average since the last reading into this struct;
-	                      PASSO_NO_UNITS if there was none, or without a clock */
+	                      PASSO_NO_UNITS if there was none, or the port has no clock */
 	int32_t error;     /* following error, Q23.8 counts: positive if the encoder lags */
 	uint32_t greatest; /* largest magnitude, counts, since passo_clear(), passo_zero() or configuration */
 	bool exceeded;     /* the error is at its limit */

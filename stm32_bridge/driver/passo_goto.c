@@ -21,10 +21,10 @@ static enum passo_error of_plan(enum passo_plan_error error)
 	                              : (enum passo_error)((unsigned)PASSO_ERROR_PLAN + (unsigned)error);
 }
 
-static struct passo_course course_of(const struct passo_goto *go, bool backwards)
+static struct passo_course course_of(const struct passo_goto *go, bool backward)
 {
 	return (struct passo_course){.axis = go->axis,
-	    .backwards = backwards,
+	    .backward = backward,
 	    .top_speed = go->top_speed,
 	    .speed = go->speed,
 	    .acceleration = go->acceleration};
@@ -74,7 +74,7 @@ static enum passo_error go_on(struct passo *passo)
 		return error;
 	plan.velocity_peak = peak;
 	const struct passo_turning turning = {.axis = go->axis, .acceleration = go->acceleration};
-	passo_driver_turns(passo, &turning, course.backwards, &plan, &aim);
+	passo_driver_turns(passo, &turning, course.backward, &plan, &aim);
 	passo->late = late_of(passo, go);
 	return PASSO_PENDING;
 }
@@ -85,7 +85,7 @@ static enum passo_error plan_change(const struct passo *passo, const struct pass
     const struct passo_sight *sight, struct passo_plan *plan, bool *aimed)
 {
 	const struct passo_machine *machine = &passo->machine;
-	const struct passo_course course = course_of(to, passo->backwards);
+	const struct passo_course course = course_of(to, passo->backward);
 	const uint64_t units = PASSO_ONE_Q48 / PASSO_UNIT_Q32;
 	const uint64_t low = passo_mul_div(sight->low, machine->clock_hz, units * passo->oversampling);
 	const uint64_t high = passo_driver_speed_of(passo, sight->high);
@@ -98,7 +98,7 @@ static enum passo_error plan_change(const struct passo *passo, const struct pass
 	const uint32_t further = (uint32_t)to->target - (uint32_t)passo->go.target;
 	/* what the core has ends there or before it */
 	if (refused == PASSO_PLAN_TOO_NEAR && passo->aimed
-	    && (int32_t)(passo->backwards ? 0u - further : further) >= 0)
+	    && (int32_t)(passo->backward ? 0u - further : further) >= 0)
 		return PASSO_OK;
 	if (refused == PASSO_PLAN_TOO_NEAR)
 		refused = passo_plan_course_change(machine, &course, low, high, 0, plan);

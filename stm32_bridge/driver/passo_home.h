@@ -58,7 +58,7 @@ enum passo_error passo_probe(struct passo *passo, const struct passo_probe *prob
 /* Jog of one axis, from rest. */
 struct passo_jog {
 	uint8_t axis;
-	bool backwards;        /* of an endless jog */
+	bool backward;         /* of an endless jog */
 	int32_t steps;         /* of a jog by distance, the sign is the direction; 0: endless */
 	uint64_t speed;        /* UQ32.32 steps/s */
 	uint64_t top_speed;    /* of an endless jog: highest for passo_jog_speed(); 0: speed */

@@ -144,7 +144,7 @@ enum passo_error passo_host_step(struct passo_host *host);
 /* Abandons the posted frame as after its last attempt; its *result stays PENDING. If it is in flight, waits
  * for its end. */
 void passo_host_drop(struct passo_host *host);
-/* True if so many writes were given up that the next sequence number could be taken for a duplicate: a read
+/* True if enough writes were given up that the next sequence number could be taken for a duplicate: a read
  * is required first. The blocking calls do it themselves. */
 bool passo_host_is_unsure(const struct passo_host *host);
 

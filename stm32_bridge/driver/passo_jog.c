@@ -43,7 +43,7 @@ enum passo_error passo_jog(struct passo *passo, const struct passo_jog *jog)
 		return error;
 	const struct passo_turning turning = {.axis = jog->axis,
 	    .steps_per_turn = STEPS_PER_TURN,
-	    .backwards = jog->backwards,
+	    .backward = jog->backward,
 	    .top_rpm = jog->top_speed != 0u ? jog->top_speed : jog->speed,
 	    .acceleration = jog->acceleration};
 	if (jog->steps == 0)

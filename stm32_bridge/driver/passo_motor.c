@@ -76,7 +76,7 @@ enum passo_error passo_motor_start(struct passo_motor *motor)
 }
 
 enum passo_error passo_motor_start_endless(
-    struct passo_motor *motor, bool backwards, uint64_t rpm, uint64_t top_rpm)
+    struct passo_motor *motor, bool backward, uint64_t rpm, uint64_t top_rpm)
 {
 	enum passo_error error = check(motor);
 
@@ -85,7 +85,7 @@ enum passo_error passo_motor_start_endless(
 	const struct passo_turning turning = {
 	    .axis = motor->axis,
 	    .steps_per_turn = motor->steps_per_turn,
-	    .backwards = backwards,
+	    .backward = backward,
 	    .top_rpm = top_rpm,
 	    .minimum_rpm = motor->minimum_rpm,
 	    .acceleration = motor->acceleration,

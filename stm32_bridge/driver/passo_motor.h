@@ -43,7 +43,7 @@ enum passo_error passo_motor_set_angle(struct passo_motor *motor, int64_t degree
 enum passo_error passo_motor_start(struct passo_motor *motor);
 /* Starts continuous rotation. top_rpm limits the speeds that passo_motor_set_speed() can set later. */
 enum passo_error passo_motor_start_endless(
-    struct passo_motor *motor, bool backwards, uint64_t rpm, uint64_t top_rpm);
+    struct passo_motor *motor, bool backward, uint64_t rpm, uint64_t top_rpm);
 /* During continuous rotation: changes the speed. Otherwise: sets the speed of the next start. */
 enum passo_error passo_motor_set_speed(struct passo_motor *motor, uint64_t rpm);
 /* Decelerates to rest: continuous rotation with its own ramp, a move to an angle with a soft stop, after

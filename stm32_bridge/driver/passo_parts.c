@@ -33,8 +33,8 @@ size_t passo_driver_line_words(const struct passo *passo, uint32_t *words, const
 	for (unsigned i = 0; i < passo->machine.axes; i++) {
 		const unsigned bit = 1u << i;
 		if (line->steps[i] == 0u)
-			sent.directions = (uint8_t)(passo->axis[i].backwards ? sent.directions | bit
-			                                                     : sent.directions & ~bit);
+			sent.directions = (uint8_t)(passo->axis[i].backward ? sent.directions | bit
+			                                                    : sent.directions & ~bit);
 	}
 	const size_t length = passo_line_words(words, &sent, passo->machine.axes);
 	if (!passo->has_outputs)

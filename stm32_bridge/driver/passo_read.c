@@ -81,12 +81,12 @@ const char *passo_cause_text(enum passo_cause cause)
 	    [PASSO_CAUSE_LINE_UNDERRUN] = "a line ended and none was queued",
 	    [PASSO_CAUSE_RAMP_UNDERRUN] = "ran out of ramps at speed",
 	    [PASSO_CAUSE_STEP_OVERRUN] = "steps came faster than the pin timing of an axis allows",
-	    [PASSO_CAUSE_LIMIT] = "an axis stepped towards an active limit switch",
+	    [PASSO_CAUSE_LIMIT] = "an axis stepped toward an active limit switch",
 	    [PASSO_CAUSE_ALARM] = "the alarm of an axis",
 	    [PASSO_CAUSE_TRIGGER] = "the trigger",
-	    [PASSO_CAUSE_WATCHDOG] = "nothing was heard from the host for too long",
+	    [PASSO_CAUSE_WATCHDOG] = "watchdog timeout, no frame from the host",
 	    [PASSO_CAUSE_ESTOP] = "e-stop",
-	    [PASSO_CAUSE_FOLLOWING_ERROR] = "an axis was too far from its encoder",
+	    [PASSO_CAUSE_FOLLOWING_ERROR] = "following error over its limit",
 	};
 
 	return (unsigned)cause <= PASSO_CAUSE_FOLLOWING_ERROR ? texts[cause] : "unknown cause";

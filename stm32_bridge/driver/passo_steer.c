@@ -26,12 +26,12 @@ static uint64_t larger(uint64_t a, uint64_t b)
 	return a > b ? a : b;
 }
 
-void passo_driver_turns(struct passo *passo, const struct passo_turning *turning, bool backwards,
+void passo_driver_turns(struct passo *passo, const struct passo_turning *turning, bool backward,
     const struct passo_plan *plan, const int32_t *aim)
 {
 	passo->expects = PASSO_EXPECT_TURNING;
 	passo->turning = *turning;
-	passo->backwards = backwards;
+	passo->backward = backward;
 	passo->velocity_peak = passo->velocity_top = plan->velocity_peak;
 	passo->has_aim = passo->aimed = aim != NULL;
 	passo->aim = aim ? *aim : 0;
@@ -129,7 +129,7 @@ static enum passo_error measure(struct passo *passo, uint64_t clocks, struct pas
 	const uint64_t passed =
 	    (passo_mul_div_ceil(speed, clocks, passo->machine.clock_hz) >> (32u - WAY_BITS)) + 1u;
 	const uint32_t far = (uint32_t)passo->aim - (uint32_t)positions[passo->turning.axis];
-	const int64_t ahead = (int64_t)(int32_t)(passo->backwards ? 0u - far : far) - STEPS_AHEAD;
+	const int64_t ahead = (int64_t)(int32_t)(passo->backward ? 0u - far : far) - STEPS_AHEAD;
 	sight->way =
 	    ahead > 0 && (uint64_t)ahead << WAY_BITS > passed ? ((uint64_t)ahead << WAY_BITS) - passed : 0u;
 	return PASSO_OK;

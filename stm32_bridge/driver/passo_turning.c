@@ -18,7 +18,7 @@ enum passo_error passo_turn_start(struct passo *passo, const struct passo_turnin
 	error = passo_move_plan(passo, &plan, NULL);
 	if (error != PASSO_OK)
 		return error;
-	passo_driver_turns(passo, turning, turning->backwards, &plan, NULL);
+	passo_driver_turns(passo, turning, turning->backward, &plan, NULL);
 	return PASSO_OK;
 }
 

@@ -128,7 +128,7 @@ static void end_line(struct passo_grbl *grbl)
 	passo_gcode_line_clear(&grbl->line);
 }
 
-/* One line at most, and only when the one before has been taken. In Alarm lines are refused at once. */
+/* One line at most, and only when the one before has been taken. In Alarm lines are refused immediately. */
 static void take_line(struct passo_grbl *grbl)
 {
 	const enum passo_grbl_state state = passo_grbl_state(grbl);

@@ -7,7 +7,7 @@
 #define MILLION ((uint64_t)PASSO_GCODE_MILLION)
 #define SECONDS_PER_MINUTE 60u
 
-/* Steps of millionths of a millimetre; UQ32.32 steps/s of millionths of mm/min. */
+/* Steps of millionths of a millimeter; UQ32.32 steps/s of millionths of mm/min. */
 static int32_t steps_of(const struct passo_grbl *grbl, unsigned axis, uint64_t length)
 {
 	const uint64_t steps = passo_mul_div(

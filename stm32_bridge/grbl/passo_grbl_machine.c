@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The machine as the settings say.
+ * The machine that the settings describe.
  */
 #include "passo_driver.h"
 #include "passo_grbl_private.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * What comes in: bytes of lines into a ring, real-time requests into a set, overrides into their percentages.
+ * Input: bytes of lines into a ring, real-time requests into a set, overrides into their percentages.
  *
- * A ring that is full loses all bytes until what is there has been read, so that it is known which lines have
+ * A ring that is full loses all bytes until its contents have been read, so that it is known which lines have
  * lost some: the one at its end, and those whose ends were lost.
  */
 #include "passo_grbl_private.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Reports: state, modes, offsets. Lengths are millimetres with three decimals.
+ * Reports: state, modes, offsets. Lengths are millimeters with three decimals.
  */
 #include "passo_grbl_private.h"
 #include "passo_inputs.h"

@@ -107,7 +107,7 @@ bool passo_grbl_end_stop(struct passo_grbl *grbl)
 	if (grbl->held)
 		passo_resume(passo);
 	grbl->stopping = grbl->jogs = grbl->held = false;
-	if (grbl->owes) /* by a jog that was cancelled */
+	if (grbl->owes) /* by a jog that was canceled */
 		passo_grbl_answer(grbl, PASSO_GCODE_OK);
 	grbl->owes = false;
 	if (!grbl->greets)
@@ -120,7 +120,7 @@ bool passo_grbl_end_stop(struct passo_grbl *grbl)
 	return true;
 }
 
-/* Feeds above 100 % are planned anew; what is below is the rate of the core. */
+/* Feeds above 100 % are replanned; those below are the rate of the core. */
 void passo_grbl_override(struct passo_grbl *grbl)
 {
 	const uint32_t above = grbl->feed > PERCENT_FULL ? grbl->feed : PERCENT_FULL;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * An action is taken at once, or waits: a line for room on the path, a probe and M0 for the end of the path.
+ * An action is taken immediately, or waits: a line for room on the path, a probe and M0 for the end of the
+ * path.
  */
 #include "passo_player.h"
 
@@ -194,7 +195,7 @@ static enum passo_error take_action(struct passo_player *player, enum passo_play
 	return PASSO_OK;
 }
 
-/* The chords of an arc are many: none while the core is short of ramps, and not all at once. */
+/* The chords of an arc are many: none while the core is short of ramps, and not all in one go. */
 static enum passo_error take_actions(struct passo_player *player, enum passo_player_event *event)
 {
 	const struct passo *passo = player->feed->passo;

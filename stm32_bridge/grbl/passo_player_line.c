@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * What moves: the line of G-code that it belongs to, and its speed.
+ * The line of G-code in motion, and its speed.
  */
 #include "passo_math.h"
 #include "passo_player.h"

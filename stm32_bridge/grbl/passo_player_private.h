@@ -7,7 +7,7 @@
 #include "passo_player.h"
 
 uint64_t passo_player_magnitude(int64_t value);
-/* Drops the rest of the line: the program goes on from where the path ends. */
+/* Drops the rest of the line: the program continues from where the path ends. */
 void passo_player_drop(struct passo_player *player);
 /* At rest. An event if there is no probe, or if it has its level already. */
 enum passo_error passo_player_begin_probe(struct passo_player *player, enum passo_player_event *event);

@@ -75,7 +75,7 @@ class Dma(Peripheral):
                 places[i] += self._done[channel] * sizes[i]
         source, target = (1, 0) if control >> FROM_MEMORY & 1 else (0, 1)
         value = self.machine.read(places[source], sizes[source])
-        self._count(channel, control)  # first, because the write may cause another request at once
+        self._count(channel, control)  # first, because the write may cause another request immediately
         self.machine.write(places[target], sizes[target], value & ((1 << 8 * sizes[target]) - 1))
         return True
 

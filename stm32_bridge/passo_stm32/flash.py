@@ -16,7 +16,7 @@ PROGRAM_TIME = TICKS_PER_SECOND // 10_000_000 * 525
 class Flash(Peripheral):
     """Erases and programs the pages that hold no part of the program.
 
-    The processor stands still meanwhile: it fetches from the same flash. `worn` are pages that fail.
+    The processor stalls meanwhile: it fetches from the same flash. `worn` are pages that fail.
     """
 
     name = "FLASH"

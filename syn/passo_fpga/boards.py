@@ -108,7 +108,7 @@ class Board:
     def _axes(self, axes: int | None) -> int:
         chosen = self.axes if axes is None else axes
         if not 1 <= chosen <= self.axes:
-            reason = f"{chosen} are wanted, and the table has pins for {self.axes}"
+            reason = f"{chosen} requested, but the table has pins for {self.axes}"
             raise TableError(self.name, "axes", reason)
         return chosen
 

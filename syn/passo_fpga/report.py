@@ -67,9 +67,9 @@ GOALS = (
 def main(arguments: Sequence[str] | None = None) -> int:
     """Return 0 if all runs ended, whether they fit or not; 2 for an unknown device."""
     parser = argparse.ArgumentParser(prog="make report", description="Measure size and speed of the core.")
-    parser.add_argument("--only", default="", help=f"devices, with commas between: {','.join(DEVICES)}")
+    parser.add_argument("--only", default="", help=f"comma-separated devices: {','.join(DEVICES)}")
     parser.add_argument("--quick", action="store_true", help="only the rows of the goals")
-    parser.add_argument("--parts", action="store_true", help="the cost of each part of the core instead")
+    parser.add_argument("--parts", action="store_true", help="measure the optional blocks instead")
     options = parser.parse_args(arguments)
     chosen = [name for name in options.only.split(",") if name] or list(DEVICES)
     if unknown := set(chosen) - set(DEVICES):

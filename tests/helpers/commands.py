@@ -37,7 +37,7 @@ PART = paths.examples / "gcode"
 MACHINE = ("--machine", str(PART / "machine.toml"))
 CONSOLE = ("console", "--grbl", "--engine", "model", *MACHINE)
 
-# OUT is a folder that is there.
+# OUT is an existing folder.
 WRITERS: dict[str, list[str]] = {
     "run": ["run", "moves.toml", "--engine", "model", "--plot", "--report", "--out", "OUT"],
     "scene": ["run", "scene.toml", "--engine", "model", "--plot", "--report", "--out", "OUT"],

@@ -77,7 +77,7 @@ class Player:
 
 
 class PlayerPair:
-    """An engine, as passo.link wants one, that compares both models at random moments."""
+    """An engine for passo.link that compares both models at random moments."""
 
     def __init__(self, parameters: Parameters, rng: random.Random):
         self.ffi, self.c = load()

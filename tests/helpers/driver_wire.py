@@ -46,7 +46,7 @@ class Wire:
         return self.before + self.engine.clock
 
     def transfer(self, mosi: Sequence[int], _: int = 0) -> list[int]:
-        """One chip select. The next may follow at once."""
+        """One chip select. The next may follow immediately."""
         self.frames += 1
         self.requests.append(list(mosi))
         self.before_frame(self.frames)

@@ -99,7 +99,7 @@ def write_moves(moves: list[dict[str, Any]], clock_hz: int, path: Path) -> Path:
 def random_moves(
     seed: int, count: int, clock_hz: int, parameters: Parameters, folder: Path, longest: float = 0.025
 ) -> list[tuple[dict[str, Any], MoveFile, Plan]]:
-    """So many random moves that can be made in at most `longest` seconds, each with its plan."""
+    """`count` random moves of at most `longest` seconds, each with its plan."""
     rng = random.Random(seed)
     found: list[tuple[dict[str, Any], MoveFile, Plan]] = []
     while len(found) < count:

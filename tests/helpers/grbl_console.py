@@ -41,7 +41,7 @@ class GrblConsole:
         self.grbl.wait = lambda until, seconds=patience: wait(until, min(seconds, patience))
 
     def send(self, data: bytes, seconds: float = 0) -> str:
-        """What it says to bytes of one batch, at once and in a time."""
+        """What it answers to bytes of one batch, immediately and within a time."""
         self.take_all()
         self.grbl.type(data)
         self.grbl.poll()

@@ -8,7 +8,7 @@ import re
 from dataclasses import dataclass, field
 
 STEPS_PER_MM = 20
-STOPS = 200  # ms after which what stops must be at rest, and what was asked for be told
+STOPS = 200  # ms after which what stops must be at rest, and what was requested be reported
 OVERRIDES = {"90": (0, 100), "91": (0, 10), "92": (0, -10), "93": (0, 1), "94": (0, -1),
              "95": (1, 100), "96": (1, 50), "97": (1, 25),
              "99": (2, 100), "9a": (2, 10), "9b": (2, -10), "9c": (2, 1), "9d": (2, -1)}  # fmt: skip
@@ -36,7 +36,7 @@ class Judge:
     state: str = ""
     moved: int = 0  # ms of the last step
     rests: int = -1  # since when nothing may move; -1: it may
-    holds: int = -1  # until when a hold must be told; -1: none is due
+    holds: int = -1  # until when a hold must be reported; -1: none is due
     numbers: set[int] = field(default_factory=set)
     last: int = 0  # line that moved last
     homes: bool = False  # the position has changed by a home

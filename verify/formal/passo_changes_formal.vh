@@ -63,7 +63,6 @@ always @(posedge clk)
 reg f_full = 1'b0;
 always @(posedge clk) f_full <= f_waiting == DEPTH && !rst && !flush;
 
-`ifdef INVARIANTS
 // Place by place: clocks since its change went in
 reg [5:0] f_ages[0:DEPTH-1];
 reg        f_clean = 1'b0;  // a reset is two clocks ago
@@ -99,4 +98,3 @@ always @(posedge clk)
     end
     if (f_watched && f_came) assert (f_ahead == 1);
   end
-`endif

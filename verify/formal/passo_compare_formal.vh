@@ -11,7 +11,7 @@ always @(posedge clk) begin
     compare_direction_stands : assume ((step_made & (step_direction ^ $past(step_direction))) == {AXES{1'b0}});
   if (f_started) compare_steps_apart : assume ((step_made & $past(step_made)) == {AXES{1'b0}});
   if (write_distance || write_pulse) compare_written_at_rest : assume (f_quiet && $past(f_quiet));
-  if (f_started && $past(write_distance || write_pulse || rst)) compare_step_not_at_once : assume (f_quiet);
+  if (f_started && $past(write_distance || write_pulse || rst)) compare_no_step_then : assume (f_quiet);
   if (f_started && !(f_quiet && $past(f_quiet))) compare_axis_stands : assume ($stable(axis));
 end
 
@@ -45,11 +45,9 @@ always @(posedge clk)
     if (f_pulse && !write_pulse && f_high > width) pulse_ends : assert (!pin);
   end
 
-`ifdef INVARIANTS
 always @(posedge clk)
   if (f_started && !$past(rst)) begin
     assert (away == f_point - f_position);
     if ($past(!steps && !write_distance && !rst)) assert (one_up == (away == 32'd1) && one_down == (away == 32'hFFFFFFFF));
     if (pin) assert (f_pulse && timer == f_high && (f_high <= width || write_pulse));
   end
-`endif

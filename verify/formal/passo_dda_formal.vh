@@ -3,7 +3,7 @@
 // passo_line_formal.vh, of the step counts in passo_line_queue_formal.vh.
 
 // --- A line as driven by the line counter: M substeps of A and B; the next line (an ENDLESS one: itself) is loaded
-// with the last one. A stop ends A and B at once; the release of an ENDLESS line ends it anywhere.
+// with the last one. A stop ends A and B immediately; the release of an ENDLESS line ends it anywhere.
 (* anyseq *) reg [29:0] f_m_next;
 (* anyseq *) reg f_stop;
 reg         f_stopped = 1'b0;
@@ -86,7 +86,6 @@ always @(posedge clk) begin
   end
 end
 
-`ifdef INVARIANTS
 always @(posedge clk) begin
   if (f_line && !load_start_q && !decide_step) begin
     assert (f_e < f_m && e_minus_m == f_e - f_m);
@@ -118,4 +117,3 @@ always @(posedge clk) begin
             - {24'd0, f_steps[7:0]} * {24'd0, f_m_q[7:0]});
 `endif
 end
-`endif

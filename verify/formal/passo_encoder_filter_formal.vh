@@ -8,9 +8,6 @@ always @(posedge clk) begin
   if (!f_ready) f_clocks <= f_clocks + 2'd1;
   if (!f_ready) encoder_filter_reset : assume (rst);
   if (f_clocks != 2'd0) encoder_filter_length : assume ($stable(length));
-`ifdef SMALL
-  small_length : assume (length < 8'd3);
-`endif
 end
 
 // --- The pin, 2 clocks late, and for how many clocks it has been so, up to 256; the level follows from these alone
@@ -24,7 +21,7 @@ always @(posedge clk) begin
   f_since <= f_pin_q != f_pin ? 9'd1 : f_since == 9'd256 ? 9'd256 : f_since + 9'd1;
   if (f_since > {1'b0, length}) f_level <= f_pin;
   if (rst) begin
-    f_since <= 9'd1;  // it begins anew
+    f_since <= 9'd1;  // it starts again
     f_level <= f_pin;
   end
 end
@@ -35,7 +32,6 @@ always @(posedge clk)
     sampled_late : assert (sampled == f_pin);
   end
 
-`ifdef INVARIANTS
 always @(posedge clk) begin
   if (f_clocks != 2'd0) assert (sync[0] == f_pin_q);
   if (f_clocks[1]) assert (sync[1] == f_pin);
@@ -44,4 +40,3 @@ always @(posedge clk) begin
     if (level != f_pin) assert (f_since <= {1'b0, length} + 9'd1 && {1'b0, count} == f_since - 9'd1);
   end
 end
-`endif

@@ -58,8 +58,6 @@ always @(posedge clk)
     index_told : assert (index_event == f_event);
   end
 
-`ifdef INVARIANTS
 always @(posedge clk)
   if (f_begun && f_clocks == 2'd3)
     assert (a_q == f_level_q[0] && b_q == f_level_q[1] && active_q == f_active_q);
-`endif

@@ -11,7 +11,7 @@ always @(posedge clk) begin
 end
 
 always @(posedge clk) begin
-  if (!estop_n) pressed_at_once : assert (pressed);
+  if (!estop_n) pressed_asynchronously : assert (pressed);
   if (f_three && $past(pressed) && !pressed)
     only_cleared_when_released : assert ($past(clear || rst) && $past(estop_n) && $past(estop_n, 2) && $past(estop_n, 3));
   if (f_three && $past(clear || rst) && $past(estop_n) && $past(estop_n, 2) && $past(estop_n, 3) && estop_n)
@@ -20,11 +20,9 @@ always @(posedge clk) begin
   if (f_two && stop) stops_for_a_reason : assert ($past(pressed, 2));
 end
 
-`ifdef INVARIANTS
 always @(posedge clk)
   if (f_started) begin
     if (released[0]) assert ($past(estop_n));
     if (f_two && released[1]) assert ($past(estop_n, 2) && released[0]);
     if (!f_two) assert (!released[1]);
   end
-`endif

@@ -63,7 +63,6 @@ always @(posedge clk)
     never_wraps : assert (f_owed < 32'sd4194304 + 32'sd512 && f_owed > -32'sd4194304 - 32'sd512);
   end
 
-`ifdef INVARIANTS
 always @(posedge clk)
   if (f_begun && f_started) begin
     assert (due == (f_owed_q > 32'sd0 && f_follows));
@@ -79,4 +78,3 @@ always @(posedge clk)
     if (!lost) assert (f_owed < 32'sd4194304 + 32'sd256 && f_owed > -32'sd4194304 - 32'sd256);
     if (lost && f_change != 0) assert (f_owed < 32'sd4194304 + 32'sd384 && f_owed > -32'sd4194304 - 32'sd384);
   end
-`endif

@@ -10,7 +10,7 @@ always @(posedge clk) begin
   if (!f_started) following_reset : assume (rst);
 end
 
-// --- The sum, as it was with each of the last clocks; what is off the scale is not added to
+// --- The sum, as it was with each of the last clocks; a saturated sum is not added to
 wire signed [63:0] f_ratio = $signed({32'd0, ratio});
 wire signed [63:0] f_step = !step_made ? 64'sd0 : step_direction ? -f_ratio : f_ratio;
 wire signed [63:0] f_count = !count_made ? 64'sd0 : count_down ? -64'sd65536 : 64'sd65536;
@@ -54,7 +54,6 @@ always @(posedge clk)
     if (!f_cleared) greatest_is_kept : assert (greatest >= f_greatest);
   end
 
-`ifdef INVARIANTS
 always @(posedge clk)
   if (f_begun && f_started) begin
     assert ($signed(change) + $signed({1'b0, change_carry}) == f_change);
@@ -63,4 +62,3 @@ always @(posedge clk)
     assert (f_judged < 2 * f_off + 64'sd65536 && f_judged >= -2 * f_off - 64'sd65536);
     assert ({46'd0, magnitude} == (f_judged < 0 ? (-64'sd1 - f_judged) >>> 16 : f_judged >>> 16));
   end
-`endif

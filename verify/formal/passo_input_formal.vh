@@ -49,7 +49,6 @@ always @(posedge clk)
   end
   else if (f_started && $past(rst)) reset_forgets : assert (unknown);
 
-`ifdef INVARIANTS
 always @(posedge clk)
   if (f_started) begin
     assert (f_since < f_length);
@@ -66,4 +65,3 @@ always @(posedge clk)
       if (f_settings < 6'd3) assert (unknown);
     end
   end
-`endif

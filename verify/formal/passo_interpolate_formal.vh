@@ -9,15 +9,9 @@ localparam [1:0] F_SHAPE = 2'd2;
 localparam [1:0] F_SCALE = 2'd3;
 localparam [5:0] F_SHAPE_CLOCKS = 6'd19;
 localparam [5:0] F_SCALE_CLOCKS = 6'd50;
-`ifdef SMALL
-reg       f_begun = 1'b1;
-reg [1:0] f_phase;
-reg [1:0] f_rested;  // clocks of rest, up to 3
-`else
 reg       f_begun = 1'b0;
 reg [1:0] f_phase = F_REST;
 reg [1:0] f_rested = 2'd0;
-`endif
 reg [5:0] f_clock;  // of the phase, from 1
 reg       f_shaped;
 reg       f_same;  // without a ramp: a = b, and any shape
@@ -106,61 +100,52 @@ always @(posedge clk) begin
   end
 end
 
-// --- Invariants, for the induction. The search for planted bugs starts in any state in which they have held for
-// F_GIVEN clocks.
-`ifdef INVARIANTS
-`define HOLDS assert
-`else
-`define HOLDS if (f_age == F_GIVEN) begin end else assume
-`endif
-localparam [2:0] F_GIVEN = 3'd3;  // the depth of the induction
-reg [2:0] f_age = 3'd0;
-always @(posedge clk) if (f_age != F_GIVEN) f_age <= f_age + 3'd1;
+// --- Invariants, for the induction
 reg f_last_point;
 always @(posedge clk) if (load_points) f_last_point <= point_is_last;
 wire [24:0] f_of_bit = f_phase == F_SHAPE ? progress[24:0] : fraction;
 integer k;
 always @(posedge clk)
   if (f_begun) begin
-    if (f_phase == F_SHAPE) `HOLDS (f_clock >= 6'd1 && f_clock <= F_SHAPE_CLOCKS);
-    if (f_phase == F_SCALE) `HOLDS (f_clock >= 6'd1 && f_clock <= F_SCALE_CLOCKS);
-    if (f_phase != F_REST || f_rested >= 2'd2) `HOLDS (a == f_a && b == f_b);
-    if (f_phase == F_REST && f_rested >= 2'd2) `HOLDS (!a && !b);
-    if (f_phase == F_REST && f_rested == 2'd3) `HOLDS (addend == 25'd0 && !both);
+    if (f_phase == F_SHAPE) assert (f_clock >= 6'd1 && f_clock <= F_SHAPE_CLOCKS);
+    if (f_phase == F_SCALE) assert (f_clock >= 6'd1 && f_clock <= F_SCALE_CLOCKS);
+    if (f_phase != F_REST || f_rested >= 2'd2) assert (a == f_a && b == f_b);
+    if (f_phase == F_REST && f_rested >= 2'd2) assert (!a && !b);
+    if (f_phase == F_REST && f_rested == 2'd3) assert (addend == 25'd0 && !both);
     if (f_phase == F_LOADED || (f_phase == F_SHAPE && f_clock == 6'd1) || (f_scale_begins && !f_shaped))
-      `HOLDS (!a && !b && addend == 25'd0 && !both);
+      assert (!a && !b && addend == 25'd0 && !both);
     // points
-    if (f_phase == F_LOADED) `HOLDS (sum == 25'd0 && a_point == f_point && low == {6'd0, f_next});
-    if (f_phase == F_LOADED) `HOLDS (f_last_point ? f_next == 17'h10000 : !f_next[16]);
+    if (f_phase == F_LOADED) assert (sum == 25'd0 && a_point == f_point && low == {6'd0, f_next});
+    if (f_phase == F_LOADED) assert (f_last_point ? f_next == 17'h10000 : !f_next[16]);
     if (f_phase == F_SHAPE) begin
-      `HOLDS (a_point == f_point);
-      if (f_clock <= 6'd3) `HOLDS (sum == 25'd0);
-      if (f_clock == 6'd2) `HOLDS (addend == 25'd0 && !both);
+      assert (a_point == f_point);
+      if (f_clock <= 6'd3) assert (sum == 25'd0);
+      if (f_clock == 6'd2) assert (addend == 25'd0 && !both);
       for (k = 1; k <= 19; k = k + 1)
         if (f_clock == k) begin
-          `HOLDS (((low ^ f_next) & ((23'd1 << (24 - k)) - 23'd1)) == 23'd0 || k == 1);
-          `HOLDS (f_point <= 16'hFFFF >> (k - 1));
-          `HOLDS (f_last_point ? f_next == 17'h10000 >> (k - 1) : f_next <= 17'h0FFFF >> (k - 1));
+          assert (((low ^ f_next) & ((23'd1 << (24 - k)) - 23'd1)) == 23'd0 || k == 1);
+          assert (f_point <= 16'hFFFF >> (k - 1));
+          assert (f_last_point ? f_next == 17'h10000 >> (k - 1) : f_next <= 17'h0FFFF >> (k - 1));
         end
-      if (f_clock == 6'd1) `HOLDS (low == {6'd0, f_next});
-      if (f_clock >= 6'd2) `HOLDS (f_b == (f_clock == 6'd18) || !f_last_point);
-      if (f_clock >= 6'd3) `HOLDS (f_b_q == (f_clock == 6'd19) || !f_last_point);
-      if (f_clock == 6'd18) `HOLDS (!f_a && f_b == f_last_point);
-      if (f_clock == 6'd19) `HOLDS (!f_a && !f_b && !f_a_q && f_b_q == f_last_point);
-      if (f_clock >= 6'd3) `HOLDS ({sum, low[22]} == f_product[71:46]);
-      if (f_clock >= 6'd3 && f_last_point) `HOLDS (f_product[71:0] <= {25'h1000000 - f_at, 48'd0});
+      if (f_clock == 6'd1) assert (low == {6'd0, f_next});
+      if (f_clock >= 6'd2) assert (f_b == (f_clock == 6'd18) || !f_last_point);
+      if (f_clock >= 6'd3) assert (f_b_q == (f_clock == 6'd19) || !f_last_point);
+      if (f_clock == 6'd18) assert (!f_a && f_b == f_last_point);
+      if (f_clock == 6'd19) assert (!f_a && !f_b && !f_a_q && f_b_q == f_last_point);
+      if (f_clock >= 6'd3) assert ({sum, low[22]} == f_product[71:46]);
+      if (f_clock >= 6'd3 && f_last_point) assert (f_product[71:0] <= {25'h1000000 - f_at, 48'd0});
     end
     if (f_scale_begins && f_shaped) begin
-      `HOLDS (!a && !b && {sum, low[22]} == f_product[71:46] && (!sum[24] || {sum[23:0], low[22]} == 25'd0));
+      assert (!a && !b && {sum, low[22]} == f_product[71:46] && (!sum[24] || {sum[23:0], low[22]} == 25'd0));
     end
     // velocities
-    if (f_phase == F_SCALE && f_clock == 6'd2) `HOLDS (addend == 25'd0 && !both);
-    if (f_phase == F_SCALE && (f_clock == 6'd2 || f_clock == 6'd3)) `HOLDS (sum == 25'd0);
-    if (f_phase == F_SCALE && f_same && f_clock >= 6'd2) `HOLDS (f_a == f_b);
-    if (f_phase == F_SCALE && f_same && f_clock >= 6'd3) `HOLDS (f_a_q == f_b_q);
+    if (f_phase == F_SCALE && f_clock == 6'd2) assert (addend == 25'd0 && !both);
+    if (f_phase == F_SCALE && (f_clock == 6'd2 || f_clock == 6'd3)) assert (sum == 25'd0);
+    if (f_phase == F_SCALE && f_same && f_clock >= 6'd2) assert (f_a == f_b);
+    if (f_phase == F_SCALE && f_same && f_clock >= 6'd3) assert (f_a_q == f_b_q);
     // both
     if (f_counts) begin
-      `HOLDS (addend == (f_a_q == f_b_q ? 25'd0 : f_of_bit ^ {25{f_a_q}}) && both == (f_a_q && f_b_q));
-      if (f_phase == F_SCALE) `HOLDS (result == f_product[71:24]);
+      assert (addend == (f_a_q == f_b_q ? 25'd0 : f_of_bit ^ {25{f_a_q}}) && both == (f_a_q && f_b_q));
+      if (f_phase == F_SCALE) assert (result == f_product[71:24]);
     end
   end

@@ -35,11 +35,9 @@ always @(posedge clk)
     if ($past(f_low || f_high || alarm[0]) && !$past(clear)) axis_is_named : assert (named[0]);
   end
 
-`ifdef INVARIANTS
 always @(posedge clk)
   if (f_begun && $past(f_begun)) begin
     if (closed_low[0]) assert ($past(limit_low[0]));
     if (f_entered_low) assert (closed_low[0]);
     if (f_entered_high) assert (closed_high[0]);
   end
-`endif

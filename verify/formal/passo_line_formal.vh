@@ -30,9 +30,6 @@ always @(posedge clk) begin
   if (substep) line_never_two_in_a_row : assume (!f_substep && !(f_taken && !f_substep));
   if (f_shown) line_flags_stand : assume (last == f_last && endless == f_endless && last_substep == f_last_substep);
   if (f_active && !f_taken && !f_rests) line_directions_stand : assume (current_directions == f_directions);
-`ifdef SMALL
-  small_line : assume (f_next_last_substep <= 30'd2);
-`endif
 end
 
 // --- The current line: its contents, and its substeps so far
@@ -101,7 +98,6 @@ always @(posedge clk)
     if (f_shown && !f_taken) endless_is_of_the_line : assert (current_endless == f_endless);
   end
 
-`ifdef INVARIANTS
 always @(posedge clk)
   if (f_begun) begin
     assert (active == f_active);
@@ -116,4 +112,3 @@ always @(posedge clk)
     if (f_active && !load_start && !load_start_q) assert (directions == f_directions);
     if (add_n && f_active && !load_start) assert (f_directions_a == f_directions);
   end
-`endif

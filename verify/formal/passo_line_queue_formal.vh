@@ -4,11 +4,7 @@
 // --- Assumptions: the link. A frame is checked word by word; if no word is refused and it ends with a whole line, it
 // may be written: as many words, the checked and valid ones. Data are stable from one clock before their strobe to
 // one clock after it, checked data from two clocks before; `bus_msb` is valid in the strobe and the clock before.
-`ifdef SMALL
-localparam [1:0] F_GAP = 2'd2;
-`else
 localparam [1:0] F_GAP = 2'd3;
-`endif
 reg       f_started = 1'b0;
 wire      f_begun = ~rst;
 reg       f_strobe_q = 1'b0;
@@ -22,9 +18,6 @@ reg [1:0] f_index = 2'd0;  // word of the line, 0 .. AXES + 1
 reg [3:0] f_since_take = 4'd0;
 reg [2:0] f_since_write = 3'd0;
 (* anyseq *) reg f_go;
-`ifdef SMALL
-reg       f_short = 1'b0;
-`endif
 wire f_strobe = (bus_check | bus_write) & select;
 wire f_last_index = f_index == AXES + 1;
 wire f_msb_right = bus_msb == 5'd0 ? bus_data <= 32'd1 : bus_data >> bus_msb == 32'd1;
@@ -63,28 +56,12 @@ always @(posedge clk) begin
     f_writing  <= bus_commit && f_select;
     if (!bus_commit) f_words <= 8'd0;
   end
-`ifdef SMALL
-  // shorter searches for bugs: where a frame may begin, any valid number of lines may have been checked already (see
-  // `shorter` in promises.toml)
-  small_line_queue_reset : assume (rst == !f_started);
-  f_short <= rst | (bus_frame & ~bus_commit) | (bus_write & f_writing & f_words == 8'd1);
-  if (f_short && checked != 0) begin
-    small_line_queue_checked : assume (checked <= f_free && !bus_check && !bus_frame);
-    f_words  <= 3 * checked;
-    f_select <= 1'b1;
-
-    f_checking <= 1'b1;
-  end
-`endif
   if (rst) begin
     {f_checking, f_writing, f_refused} <= 3'b000;
 
     f_index <= 2'd0;
     f_words <= 8'd0;
   end
-`ifdef SMALL
-  small_line_queue_data : assume (bus_data[29:10] == 20'd0 && !bus_data[31]);
-`endif
   // line counter and motion
   line_queue_blocked : assume (blocked == flush);
   if (take) line_queue_takes_the_next : assume (next_valid && !release_line);
@@ -110,9 +87,6 @@ always @(posedge clk) begin
   if (take) f_current <= 1'b1;
   if (bus_check && select && f_last_index) f_checked <= f_checked + 1'b1;
   if (bus_frame) f_checked <= 0;
-`ifdef SMALL
-  if (f_short) f_checked <= checked;
-`endif
   if (rst) f_checked <= 0;
   if (rst || flush) begin
     f_to_come <= 0;
@@ -207,7 +181,6 @@ always @(posedge clk) begin
   end
 end
 
-`ifdef INVARIANTS
 wire [29:0] f_stored_last = f_line_substeps[29:0] - 30'd1;
 wire [31:0] f_stored_substeps = {f_line_last, f_line_endless, f_stored_last};
 always @(posedge clk)
@@ -260,4 +233,3 @@ always @(posedge clk)
     if (f_index == 2'd2 && !load_substeps) assert (not_substeps == ~f_m[29:0]);
     if (f_index == 2'd1 || (f_index == 2'd0 && f_gap != 2'd0 && $past(f_begun))) assert (not_substeps == ~30'd0);
   end
-`endif

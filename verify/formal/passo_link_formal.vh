@@ -24,15 +24,8 @@
 // `frame_start` and `frame_end` alternate; after a reset either may come first. The last half-word of a frame may
 // come with frame_end or one clock later, but before the next frame, as chip select is high for two clocks. After a
 // reset the halves of a word begun before it may still come.
-`ifdef SMALL
-localparam [6:0] F_GAP = 7'd9;  // the search rotates a word in one clock, or looks only at the first one
-localparam [6:0] F_GAP_LOW = 7'd1;
-localparam [5:0] F_COMMIT = 6'd3;
-`else
 localparam [6:0] F_GAP = 7'd60;
-localparam [6:0] F_GAP_LOW = 7'd60;
 localparam [5:0] F_COMMIT = 6'd35;
-`endif
 reg       f_started = 1'b0;
 wire      f_begun = ~rst;
 (* anyseq *) reg f_select;
@@ -51,21 +44,10 @@ always @(posedge clk) begin
   if (frame_start) {f_selected, f_framed} <= 2'b11;
   if (frame_end) f_selected <= 1'b0;
   if (half_valid && f_framed) link_halves_in_turn : assume (half_low == f_upper);
-  if (half_valid) link_halves_apart : assume (f_gap >= (half_low ? F_GAP_LOW : F_GAP));
+  if (half_valid) link_halves_apart : assume (f_gap >= F_GAP);
   if (half_valid) f_upper <= !half_low;
   if (frame_start) f_upper <= 1'b0;
   if (rst) {f_selected, f_framed} <= {f_select, 1'b0};
-`ifdef SMALL
-  // a few numbers are enough to find a bug: operations 0 .. 3, sequence 0 .. 1, length 0 .. 2, address 0 .. 3
-  if (half_valid && !half_low) small_link_upper : assume ((half & 16'hCFEF) == 16'd0);
-  if (half_valid && half_low) small_link_lower : assume ((half & 16'hCFFC) == 16'd0 && half[13:12] != 2'd3);
-  small_link_reset : assume (f_watch == 6'd0 && rst == !f_started);
-  // the first frame begins at once, and half-words come as soon as they may
-  if (f_started && !f_framed) small_link_start : assume (frame_start);
-  small_link_halves :
-  assume (half_valid == (f_framed && f_selected && !frame_end && !in_ack && f_gap >= (f_upper ? F_GAP_LOW : F_GAP)));
-  if (rst) small_link_select : assume (!f_select);
-`endif
   f_gap <= frame_start || half_valid ? 7'd0 : f_gap >= F_GAP ? F_GAP : f_gap + 7'd1;
 end
 
@@ -203,7 +185,6 @@ always @(posedge clk) begin
 end
 `endif
 
-`ifdef INVARIANTS
 wire [7:0] f_states = {in_header, in_payload, in_crc, in_ack, in_replay, in_read, in_sum, in_count};
 wire f_idle = f_states == 8'd0;
 wire f_busy = !f_begin_rest && (begin_load || (count >= COUNT_LOAD && count <= COUNT_ACT));  // a word is in progress
@@ -334,4 +315,3 @@ always @(posedge clk)
     end
     if (f_runs && !in_replay) assert (f_written == f_run_length);
   end
-`endif

@@ -23,8 +23,6 @@ always @(posedge clk) begin
     f_loaded_word <= f_read_word;
   end
   if (f_there) read_is_last_written : assert (read_data == (DATA_REGISTER != 0 ? f_loaded_word : f_read_word));
-`ifdef INVARIANTS
   if (f_written) assert (words[f_address] == f_word);
   if (f_read) assert (f_written && word == f_read_word);
-`endif
 end

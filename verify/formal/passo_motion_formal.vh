@@ -127,7 +127,6 @@ always @(posedge clk)
     end
   end
 
-`ifdef INVARIANTS
 wire [2:0] f_states = {2'd0, idle} + {2'd0, preparing} + {2'd0, armed} + {2'd0, runs} + {2'd0, settles}
                       + {2'd0, drains} + {2'd0, stopped};
 always @(posedge clk)
@@ -156,4 +155,3 @@ always @(posedge clk)
     if (f_aborted && !f_stopped_q) assert (stopped || (aborted[0] && stop_due));
     if (state == STATE_RUN && f_run_age == 4'd0) assert (!running);
   end
-`endif

@@ -29,7 +29,6 @@ always @(posedge clk)
     if (outputs != $past(outputs)) levels_change_when_told : assert ($past(hit || write_levels, 2) || $past(rst, 2));
   end
 
-`ifdef INVARIANTS
 integer n;
 always @(posedge clk)
   if (f_started && !$past(rst)) begin
@@ -37,4 +36,3 @@ always @(posedge clk)
     if (lit) assert (f_lit);
     for (n = 1; n < 7; n = n + 1) if (f_still >= n) assert (still[n]);
   end
-`endif

@@ -60,7 +60,6 @@ always @(posedge clk)
     if ($past(f_begun && f_live)) never_two_in_a_row : assert (!substep || !$past(substep));
   end
 
-`ifdef INVARIANTS
 wire [24:0] f_pending = {1'b0, velocity_high} + {24'd0, phase_low_carry};
 always @(posedge clk)
   if (f_begun) begin
@@ -77,4 +76,3 @@ always @(posedge clk)
       assert (!(f_carry && f_carry_q));
     end
   end
-`endif

@@ -94,7 +94,6 @@ always @(posedge clk) begin
   if (f_begun && $past(f_begun && load && load_zero)) zero_loaded : assert (data == 32'd0);
 end
 
-`ifdef INVARIANTS
 wire [31:0] f_passed = ~(32'hFFFFFFFF >> bit_index);  // bits rotated so far
 wire [31:0] f_mixed = (f_after & f_passed) | (f_before & ~f_passed);
 wire [63:0] f_rotated = {f_mixed, f_mixed} << bit_index;
@@ -117,4 +116,3 @@ always @(posedge clk)
       end
     end
   end
-`endif

@@ -3,18 +3,12 @@
 // built bit by bit, which avoids products of two symbolic numbers.
 
 // --- Assumptions: the settings are in range, and change only with `write` or after a reset
-`ifdef SMALL
-reg f_started = 1'b1;
-`else
 reg f_started = 1'b0;
-`endif
-reg f_past = 1'b0;
 always @(posedge clk) begin
   f_started <= 1'b1;
-  f_past    <= 1'b1;
   if (!f_started) power_reset : assume (rst);
   power_in_range : assume (pwm_step <= 24'h800000 && power_reference <= 32'h80000000);
-  if (f_past && !$stable({pwm_step, power_reference})) power_settings_stand : assume (write || $past(rst));
+  if (f_started && !$stable({pwm_step, power_reference})) power_settings_stand : assume (write || $past(rst));
 end
 
 // --- Step times reference, lowest bit first: after each bit all shifts down by one place and nothing is lost
@@ -99,7 +93,7 @@ reg [6:0] f_moving;
 always @(posedge clk) f_moving <= rst || !moves ? 7'd0 : f_moving == 7'd127 ? 7'd127 : f_moving + 7'd1;
 
 always @(posedge clk)
-  if (f_started && f_past && !$past(rst)) begin
+  if (f_started && !$past(rst)) begin
     if (!$past(moves)) none_at_rest : assert (cost == 24'd0);
     if (f_moving < 7'd71) none_at_first : assert (cost == 24'd0);
     if ($past(count) == 7'd0 && $past(moves)) cost_is_the_quotient : assert (cost == $past(f_result[23:0]));
@@ -114,76 +108,67 @@ always @(posedge clk)
     end
   end
 
-// --- Invariants, for the induction. The search for planted bugs starts in any state in which they have held for
-// F_GIVEN clocks.
-`ifdef INVARIANTS
-`define HOLDS assert
-`else
-`define HOLDS if (f_age == F_GIVEN) begin end else assume
-`endif
-localparam [2:0] F_GIVEN = 3'd3;  // the depth of the induction
-reg [2:0] f_age = 3'd0;
-always @(posedge clk) if (f_age != F_GIVEN) f_age <= f_age + 3'd1;
+// --- Invariants, for the induction
 integer k;
 always @(posedge clk)
-  if (f_started && (!f_past || !$past(rst))) begin
-    `HOLDS (count <= LAST || (count >= SCALE && count <= SCALED));
-    `HOLDS (divides == (count >= DIVIDE && count <= LAST));
-    if (f_rounds) `HOLDS (f_moving >= count);
-    if (f_result != 25'd0) `HOLDS (f_moving >= 7'd70);
-    if (cost != 24'd0) `HOLDS (f_moving >= 7'd71);
-    if (f_moving == 7'd0) `HOLDS (f_result == 25'd0 && cost == 24'd0 && !f_rounds);
-    if (count != 7'd0) `HOLDS (cost == f_result[23:0]);
+  if (f_started && !$past(rst)) begin
+    assert (count <= LAST || (count >= SCALE && count <= SCALED));
+    assert (divides == (count >= DIVIDE && count <= LAST));
+    if (f_rounds) assert (f_moving >= count);
+    if (f_result != 25'd0) assert (f_moving >= 7'd70);
+    if (cost != 24'd0) assert (f_moving >= 7'd71);
+    if (f_moving == 7'd0) assert (f_result == 25'd0 && cost == 24'd0 && !f_rounds);
+    if (count != 7'd0) assert (cost == f_result[23:0]);
     if (count <= DIVIDE || f_scales)
-      `HOLDS (low[24] == f_result[24] && (low[24] || low[23:0] == f_result[23:0]) && (!f_result[24] || f_result[23:0] == 24'hFFFFFF));
-    else `HOLDS (!f_result[24] || f_result[23:0] == 24'hFFFFFF);
-    if (!stale || f_rounds) `HOLDS (!f_torn);
-    if (!stale && !write) `HOLDS (f_step == pwm_step && f_reference == power_reference);
+      assert (low[24] == f_result[24] && (low[24] || low[23:0] == f_result[23:0]) && (!f_result[24] || f_result[23:0] == 24'hFFFFFF));
+    else assert (!f_result[24] || f_result[23:0] == 24'hFFFFFF);
+    if (!stale || f_rounds) assert (!f_torn);
+    if (!stale && !write) assert (f_step == pwm_step && f_reference == power_reference);
     // the product of the settings
-    if (count == SCALE) `HOLDS (product_part == 32'd0 && product == 33'd0 && f_product == 58'd0 && scaled_low == f_step_left);
-    if (f_scales) `HOLDS (f_step <= 24'h800000 && f_reference_now <= 32'h80000000);
+    if (count == SCALE) assert (product_part == 32'd0 && product == 33'd0 && f_product == 58'd0 && scaled_low == f_step_left);
+    if (f_scales) assert (f_step <= 24'h800000 && f_reference_now <= 32'h80000000);
     for (k = 0; k <= 25; k = k + 1)
       if (f_scales && count == SCALE + 1 + k) begin
-        `HOLDS ({1'b0, product} == f_product[57:24] && scaled_low == ({1'b0, f_step_left[23:1]} | f_product[23:0]));
-        `HOLDS ((f_product & ((58'd1 << (25 - k)) - 58'd1)) == 58'd0);
-        `HOLDS ({1'b0, f_step_left} < 25'd1 << (24 - (k > 24 ? 24 : k)));
-        `HOLDS (f_product <= (k <= 23 ? 58'h100000000000000 : k == 24 ? 58'h80000000000000 : 58'h40000000000000));
+        assert ({1'b0, product} == f_product[57:24] && scaled_low == ({1'b0, f_step_left[23:1]} | f_product[23:0]));
+        assert ((f_product & ((58'd1 << (25 - k)) - 58'd1)) == 58'd0);
+        assert ({1'b0, f_step_left} < 25'd1 << (24 - (k > 24 ? 24 : k)));
+        assert (f_product <= (k <= 23 ? 58'h100000000000000 : k == 24 ? 58'h80000000000000 : 58'h40000000000000));
         if (k <= 23 && f_step_left[k > 23 ? 0 : 23 - k])
-          `HOLDS (f_step_left == 24'd1 << (23 - k) && f_product == 58'd0);
-        if (k <= 24) `HOLDS (product_part == (f_step_left[0] ? f_reference_now : 32'd0));
+          assert (f_step_left == 24'd1 << (23 - k) && f_product == 58'd0);
+        if (k <= 24) assert (product_part == (f_step_left[0] ? f_reference_now : 32'd0));
       end
     if (count == SCALE) begin
-      `HOLDS (f_step_left <= 24'h800000);
+      assert (f_step_left <= 24'h800000);
     end
-    if (!f_scales && !stale) `HOLDS ({scaled_high, scaled_low} == f_scaled);
-    if (f_rounds) `HOLDS ({scaled_high, scaled_low} == f_scaled);
+    if (!f_scales && !stale) assert ({scaled_high, scaled_low} == f_scaled);
+    if (f_rounds) assert ({scaled_high, scaled_low} == f_scaled);
     // velocity times rate
     if (count != 7'd0 && count <= DIVIDE) begin
-      `HOLDS (factor == f_velocity && f_speed <= {1'b0, f_velocity, 17'd0});
-      if (count == 7'd1) `HOLDS (product == 33'd0 && product_part == 32'd0 && f_speed == 50'd0 && rate_left == f_rate);
-      if (count >= 7'd2) `HOLDS ({1'b0, product} == f_speed[49:16] && rate_left == f_rate >> 1);
-      if (count >= 7'd2 && count < DIVIDE) `HOLDS (product_part == (f_rate[0] ? factor : 32'd0));
+      assert (factor == f_velocity && f_speed <= {1'b0, f_velocity, 17'd0});
+      if (count == 7'd1) assert (product == 33'd0 && product_part == 32'd0 && f_speed == 50'd0 && rate_left == f_rate);
+      if (count >= 7'd2) assert ({1'b0, product} == f_speed[49:16] && rate_left == f_rate >> 1);
+      if (count >= 7'd2 && count < DIVIDE) assert (product_part == (f_rate[0] ? factor : 32'd0));
     end
     // the division: after k bits
-    if (count != 7'd0 && count <= DIVIDE) `HOLDS (remainder == 32'd0 && !low[25]);
-    if (count == DIVIDE) `HOLDS (divisor_part == {4'd0, scaled_high[29:1]});
-    if (divides && count != DIVIDE) `HOLDS (factor == f_factor);
+    if (count != 7'd0 && count <= DIVIDE) assert (remainder == 32'd0 && !low[25]);
+    if (count == DIVIDE) assert (divisor_part == {4'd0, scaled_high[29:1]});
+    if (divides && count != DIVIDE) assert (factor == f_factor);
     for (k = 0; k <= 24; k = k + 1)
       if (count == DIVIDE + 1 + 2 * k || count == DIVIDE + 2 + 2 * k) begin
         if (k == 0) begin
-          `HOLDS (remainder == {3'd0, f_dividend[53:25]} && low == {f_dividend[24:0], 1'b1} && f_quotient == 25'd0);
-          `HOLDS (f_back == 59'd0 && f_rest == f_dividend[23:0]);
-          if (count[0]) `HOLDS (divisor_part == ~{1'b0, f_factor});
+          assert (remainder == {3'd0, f_dividend[53:25]} && low == {f_dividend[24:0], 1'b1} && f_quotient == 25'd0);
+          assert (f_back == 59'd0 && f_rest == f_dividend[23:0]);
+          if (count[0]) assert (divisor_part == ~{1'b0, f_factor});
         end else begin
-          `HOLDS (f_large == (f_dividend[53:24] >= f_factor));
-          if (f_large) `HOLDS (low[k > 0 ? k - 1 : 0]);
+          assert (f_large == (f_dividend[53:24] >= f_factor));
+          if (f_large) assert (low[k > 0 ? k - 1 : 0]);
           else begin
-            `HOLDS (f_begun == f_dividend >> (25 - k) && f_rest == (f_dividend[23:0] << (k - 1)));
-            `HOLDS ({5'd0, f_begun} == f_back + {27'd0, f_remainder} && f_remainder < f_factor);
-            `HOLDS (f_quotient < 25'd1 << (k - 1));
-            `HOLDS (low == (({f_dividend[24:0], 1'b1} << k) | {1'b0, f_quotient}));
-            `HOLDS (remainder == f_remainder - (f_quotient[0] ? 32'd0 : f_factor));
-            if (count[0]) `HOLDS (divisor_part == (f_quotient[0] ? ~{1'b0, f_factor} : {1'b0, f_factor}));
+            assert (f_begun == f_dividend >> (25 - k) && f_rest == (f_dividend[23:0] << (k - 1)));
+            assert ({5'd0, f_begun} == f_back + {27'd0, f_remainder} && f_remainder < f_factor);
+            assert (f_quotient < 25'd1 << (k - 1));
+            assert (low == (({f_dividend[24:0], 1'b1} << k) | {1'b0, f_quotient}));
+            assert (remainder == f_remainder - (f_quotient[0] ? 32'd0 : f_factor));
+            if (count[0]) assert (divisor_part == (f_quotient[0] ? ~{1'b0, f_factor} : {1'b0, f_factor}));
           end
         end
       end

@@ -32,13 +32,12 @@ always @(posedge clk)
   if (f_started && !$past(rst)) begin
     if (!fresh && pin) never_more_than_asked : assert (f_over < 28'sd0);
     if (!$past(go)) off_when_told : assert (!pin);
-    if ($past(go && fresh)) begins_at_once : assert (pin == $past(power != 16'd0));
+    if ($past(go && fresh)) begins_immediately : assert (pin == $past(power != 16'd0));
     if (pin && !$past(pin)) rises_with_a_period : assert (f_begins);
     if ($past(power == 16'd0)) zero_is_off : assert (!pin);
     if ($past(go && power == 16'hFFFF && !proportional)) full_is_on : assert (pin);
   end
 
-`ifdef INVARIANTS
 // What has been paid, less what the present period has had: at most this much
 wire signed [27:0] f_credit = {{2{credit[25]}}, credit};
 wire signed [27:0] f_phase = {3'd0, f_pays, phase};
@@ -60,4 +59,3 @@ always @(posedge clk)
     if (f_full && f_pays) assert (phase < cost_now);
     if ($past(power == 16'd0)) assert (credit[25]);
   end
-`endif

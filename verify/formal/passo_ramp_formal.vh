@@ -5,11 +5,7 @@
 localparam [1:0] F_REST = 2'd0;
 localparam [1:0] F_PREPARED = 2'd1;  // the first velocity is being computed, or ready
 localparam [1:0] F_RUNS = 2'd2;
-`ifdef SMALL
-reg       f_started = 1'b1;
-`else
 reg       f_started = 1'b0;
-`endif
 wire      f_begun = ~rst;
 reg [1:0] f_motion;
 reg       f_stop_q;
@@ -24,9 +20,6 @@ always @(posedge clk) begin
   if (begin_profile) f_motion <= F_RUNS;
   if (ended || rst || stop) f_motion <= F_REST;
   if (!f_started) ramp_reset : assume (rst);
-`ifdef SMALL
-  small_ramp_reset : assume (!rst);
-`endif
   if (stop && !rst) ramp_stopped_stands : assume (!prepare && !begin_profile && !drain && !advance);
   if (prepare && !rst) ramp_prepared_at_rest : assume (f_motion == F_REST && !f_stop_q && !drain);
   if (begin_profile && !rst) ramp_begins_when_ready : assume (f_motion == F_PREPARED && f_ready_q);
@@ -222,16 +215,7 @@ always @(posedge clk) begin
   end
 end
 
-// --- Invariants, for the induction. The search for planted bugs starts in any state in which they have held for
-// F_GIVEN clocks: from reset the first velocity would take a hundred clocks.
-`ifdef INVARIANTS
-`define HOLDS assert
-`else
-`define HOLDS if (f_age == F_GIVEN) begin end else assume
-`endif
-localparam [2:0] F_GIVEN = 3'd5;  // the depth of the induction
-reg [2:0] f_age = 3'd0;
-always @(posedge clk) if (f_age != F_GIVEN) f_age <= f_age + 3'd1;
+// --- Invariants, for the induction
 (* keep *) wire [47:0] f_v_start;
 (* keep *) wire [TICK_LOG2-1:0] f_tick_count;
 (* keep *) wire f_tick_last;
@@ -255,78 +239,78 @@ integer k;
 always @(posedge clk)
   if (f_begun) begin
     // stages
-    if (f_is_copy) `HOLDS (count >= 6'd1 && count <= 6'd24);
-    if (f_is_fetch || f_is_advance) `HOLDS (count >= 6'd1 && count <= 6'd8);
-    if (f_is_take) `HOLDS (count >= 6'd1 && count <= 6'd5);
-    if (f_is_look_up) `HOLDS (count == 6'd1);
-    if (f_is_shape) `HOLDS (count >= 6'd1 && count <= 6'd19);
-    if (f_is_scale) `HOLDS (count >= 6'd1 && count <= 6'd50);
-    if (!f_is_choose && !f_is_look_up) `HOLDS (stage_ends == (count == f_last_count));
-    if (f_motion == F_REST) `HOLDS (f_is_choose && !ready && ends_next || f_stop_q && !$past(f_begun));
-    if (f_motion == F_REST && !f_stop_q) `HOLDS (!moving);
-    `HOLDS (f_motion <= F_RUNS);
-    if (f_motion == F_REST) `HOLDS (f_made_now == 32'd0 && f_over_for == 4'd0 && !f_last);
-    if (f_now) `HOLDS (f_there);
+    if (f_is_copy) assert (count >= 6'd1 && count <= 6'd24);
+    if (f_is_fetch || f_is_advance) assert (count >= 6'd1 && count <= 6'd8);
+    if (f_is_take) assert (count >= 6'd1 && count <= 6'd5);
+    if (f_is_look_up) assert (count == 6'd1);
+    if (f_is_shape) assert (count >= 6'd1 && count <= 6'd19);
+    if (f_is_scale) assert (count >= 6'd1 && count <= 6'd50);
+    if (!f_is_choose && !f_is_look_up) assert (stage_ends == (count == f_last_count));
+    if (f_motion == F_REST) assert (f_is_choose && !ready && ends_next || f_stop_q && !$past(f_begun));
+    if (f_motion == F_REST && !f_stop_q) assert (!moving);
+    assert (f_motion <= F_RUNS);
+    if (f_motion == F_REST) assert (f_made_now == 32'd0 && f_over_for == 4'd0 && !f_last);
+    if (f_now) assert (f_there);
   end
 always @(posedge clk)
   if (f_begun && f_motion != F_REST) begin
-    if (ready) `HOLDS (f_is_choose || ((f_is_take || f_is_advance) && !ends_next));
-    if (ready && f_ready_q) `HOLDS (!result_move);
-    if (ends_next) `HOLDS (ready && f_is_choose && !loaded && f_is_last);
-    `HOLDS (f_due == (ready && f_ready_q && !ends_next));
-    `HOLDS (stall == (f_tick_last & ~tick_ends) && (f_tick_last || !tick_ends));
-    `HOLDS (!f_tick_last || stall == !f_ready_q || $past(f_motion == F_REST));
-    if (f_running) `HOLDS (f_clocks == {1'b0, f_tick_count} && f_tick_last == (f_tick_count == F_TICK_LAST[TICK_LOG2-1:0]));
-    `HOLDS (ramp_take == (f_is_take && count == 6'd4));
-    if (ramp_take_now) `HOLDS (f_is_copy && count == 6'd1 && f_now);
+    if (ready) assert (f_is_choose || ((f_is_take || f_is_advance) && !ends_next));
+    if (ready && f_ready_q) assert (!result_move);
+    if (ends_next) assert (ready && f_is_choose && !loaded && f_is_last);
+    assert (f_due == (ready && f_ready_q && !ends_next));
+    assert (stall == (f_tick_last & ~tick_ends) && (f_tick_last || !tick_ends));
+    assert (!f_tick_last || stall == !f_ready_q || $past(f_motion == F_REST));
+    if (f_running) assert (f_clocks == {1'b0, f_tick_count} && f_tick_last == (f_tick_count == F_TICK_LAST[TICK_LOG2-1:0]));
+    assert (ramp_take == (f_is_take && count == 6'd4));
+    if (ramp_take_now) assert (f_is_copy && count == 6'd1 && f_now);
     // the ramp being made
-    if (loaded) `HOLDS (f_there || (f_is_take && count >= 6'd5));
+    if (loaded) assert (f_there || (f_is_take && count >= 6'd5));
     if (loaded && !f_is_take)
-      `HOLDS (f_there && mirror == f_control[2] && shape == f_control[5:4] && f_is_last == f_control[0]);
-    if (loaded) `HOLDS (!f_is_copy && !f_is_fetch);
-    if (f_is_copy) `HOLDS (!f_is_last);
-    if (loaded && !f_is_take || f_is_take && count <= 6'd4 || f_is_scale) `HOLDS (!f_last);
-    if (f_is_look_up || f_is_shape || f_is_advance) `HOLDS (loaded);
-    if (!loaded && !ramp_take_now && !f_is_take && !f_is_fetch) `HOLDS (f_is_last == f_last);
-    if (!loaded && !ramp_take_now && !f_is_take) `HOLDS (f_made_now == 32'd0);
-    if (f_is_fetch) `HOLDS (f_there && !f_last && (count >= 6'd7 || !f_is_last));
+      assert (f_there && mirror == f_control[2] && shape == f_control[5:4] && f_is_last == f_control[0]);
+    if (loaded) assert (!f_is_copy && !f_is_fetch);
+    if (f_is_copy) assert (!f_is_last);
+    if (loaded && !f_is_take || f_is_take && count <= 6'd4 || f_is_scale) assert (!f_last);
+    if (f_is_look_up || f_is_shape || f_is_advance) assert (loaded);
+    if (!loaded && !ramp_take_now && !f_is_take && !f_is_fetch) assert (f_is_last == f_last);
+    if (!loaded && !ramp_take_now && !f_is_take) assert (f_made_now == 32'd0);
+    if (f_is_fetch) assert (f_there && !f_last && (count >= 6'd7 || !f_is_last));
     if (f_is_fetch && count >= 6'd7)
-      `HOLDS (mirror == f_control[2] && shape == f_control[5:4] && f_is_last == f_control[0]);
-    if (f_is_scale && !loaded) `HOLDS (!f_is_last);
-    if (f_is_take) `HOLDS (f_is_last == (count <= 6'd4 ? f_control[0] : f_last));
-    if (f_is_take && count <= 6'd4) `HOLDS (f_there && f_made_now == f_ticks);
-    `HOLDS (f_over_for == 4'd0 || (f_is_take && count <= 6'd4 && f_over_for == count - 6'd1));
-    if (f_is_take && count >= 6'd5) `HOLDS (f_made_now == 32'd0);
+      assert (mirror == f_control[2] && shape == f_control[5:4] && f_is_last == f_control[0]);
+    if (f_is_scale && !loaded) assert (!f_is_last);
+    if (f_is_take) assert (f_is_last == (count <= 6'd4 ? f_control[0] : f_last));
+    if (f_is_take && count <= 6'd4) assert (f_there && f_made_now == f_ticks);
+    assert (f_over_for == 4'd0 || (f_is_take && count <= 6'd4 && f_over_for == count - 6'd1));
+    if (f_is_take && count >= 6'd5) assert (f_made_now == 32'd0);
     // clocks since progress was made
     if (!ready || f_ready_q)
     case (stage)
-      STAGE_CHOOSE:  `HOLDS (f_busy <= (loaded ? 7'd33 : 7'd24));
-      STAGE_COPY:    `HOLDS (f_busy <= (count == 6'd1 ? 7'd34 : count - 7'd1));
-      STAGE_FETCH:   `HOLDS (f_busy <= 7'd24 + count);
-      STAGE_TAKE:    `HOLDS (f_busy <= (count <= 6'd4 ? 7'd32 + count : count - 7'd5));
-      STAGE_LOOK_UP: `HOLDS (f_busy <= 7'd34);
-      STAGE_SHAPE:   `HOLDS (f_busy <= 7'd34 + count);
-      STAGE_SCALE:   `HOLDS (f_busy <= 7'd53 + count);
-      default:      `HOLDS (f_busy <= {1'b0, count});
+      STAGE_CHOOSE:  assert (f_busy <= (loaded ? 7'd33 : 7'd24));
+      STAGE_COPY:    assert (f_busy <= (count == 6'd1 ? 7'd34 : count - 7'd1));
+      STAGE_FETCH:   assert (f_busy <= 7'd24 + count);
+      STAGE_TAKE:    assert (f_busy <= (count <= 6'd4 ? 7'd32 + count : count - 7'd5));
+      STAGE_LOOK_UP: assert (f_busy <= 7'd34);
+      STAGE_SHAPE:   assert (f_busy <= 7'd34 + count);
+      STAGE_SCALE:   assert (f_busy <= 7'd53 + count);
+      default:      assert (f_busy <= {1'b0, count});
     endcase
     // NOW ramps
-    if ((loaded && !f_is_take) || f_is_fetch || (f_is_take && count <= 6'd4)) `HOLDS (!(f_now && f_oldest_now));
+    if ((loaded && !f_is_take) || f_is_fetch || (f_is_take && count <= 6'd4)) assert (!(f_now && f_oldest_now));
     // ticks
     if (loaded && (f_is_choose || f_is_look_up || f_is_shape || f_is_advance || (f_is_scale && count <= 6'd2)))
-      `HOLDS (f_counted == {1'b0, f_made_now} + 33'd1 && !over && f_made_now < f_ticks);
-    if (loaded && f_is_scale) `HOLDS (f_made_now < f_ticks);
-    if (loaded && f_is_scale && count >= 6'd4) `HOLDS (f_counted == {1'b0, f_made_now} + 33'd2);
-    if (f_is_fetch && count == 6'd1) `HOLDS (ramp_half_index == 4'd5);
-    if (f_is_fetch && count == 6'd2) `HOLDS (f_word == ~f_ticks[15:0] && ramp_half_index == 4'd4);
+      assert (f_counted == {1'b0, f_made_now} + 33'd1 && !over && f_made_now < f_ticks);
+    if (loaded && f_is_scale) assert (f_made_now < f_ticks);
+    if (loaded && f_is_scale && count >= 6'd4) assert (f_counted == {1'b0, f_made_now} + 33'd2);
+    if (f_is_fetch && count == 6'd1) assert (ramp_half_index == 4'd5);
+    if (f_is_fetch && count == 6'd2) assert (f_word == ~f_ticks[15:0] && ramp_half_index == 4'd4);
     if (f_is_fetch && count == 6'd3)
-      `HOLDS (f_next == ~f_ticks[15:0] && f_word == ~f_ticks[31:16] && ramp_half_index == 4'd1);
+      assert (f_next == ~f_ticks[15:0] && f_word == ~f_ticks[31:16] && ramp_half_index == 4'd1);
     if (f_is_fetch && count == 6'd4)
-      `HOLDS (f_half == ~f_ticks[15:0] && f_next == ~f_ticks[31:16] && f_word == f_control);
+      assert (f_half == ~f_ticks[15:0] && f_next == ~f_ticks[31:16] && f_word == f_control);
     if (f_is_fetch && count == 6'd5)
-      `HOLDS (f_ticks_low == ~f_ticks[15:0] && f_half == ~f_ticks[31:16] && f_next == f_control);
-    if (f_is_fetch && count == 6'd6) `HOLDS (f_half == f_control);
-    if (f_is_fetch && count >= 6'd7) `HOLDS (f_counted == 33'd1);
-    if (f_is_fetch && count == 6'd8) `HOLDS (!over);
+      assert (f_ticks_low == ~f_ticks[15:0] && f_half == ~f_ticks[31:16] && f_next == f_control);
+    if (f_is_fetch && count == 6'd6) assert (f_half == f_control);
+    if (f_is_fetch && count >= 6'd7) assert (f_counted == 33'd1);
+    if (f_is_fetch && count == 6'd8) assert (!over);
   end
 
 // the use of the interpolation
@@ -334,18 +318,18 @@ wire f_shapes = loaded && shape != SHAPE_LINEAR;
 always @(posedge clk)
   if (f_begun && f_motion != F_REST) begin
     if (f_is_shape) begin
-      `HOLDS (f_use == (count == 6'd1 ? F_LOADED : F_SHAPE) && (count == 6'd1 || f_use_clock == count - 6'd1));
-      `HOLDS (moving == (count != 6'd1) && shaping == moving && f_shapes && !clear && !load_fraction && result_move == moving);
+      assert (f_use == (count == 6'd1 ? F_LOADED : F_SHAPE) && (count == 6'd1 || f_use_clock == count - 6'd1));
+      assert (moving == (count != 6'd1) && shaping == moving && f_shapes && !clear && !load_fraction && result_move == moving);
     end else if (f_is_scale) begin
-      if (count == 6'd1) `HOLDS (f_shapes ? f_use == F_SHAPE && f_use_clock == 6'd19 && shaping && moving && !clear && result_move : f_use == F_UNUSED && f_unused_for >= 2'd2);
-      else `HOLDS (f_use == F_SCALE && f_use_clock == count - 6'd1 && moving && !shaping && f_shaped == f_shapes && result_move);
-      if (count == 6'd1) `HOLDS (!load_fraction);
-      if (count >= 6'd2) `HOLDS (load_fraction == (count == 6'd2) && clear == load_fraction);
-    end else if (f_use != F_UNUSED) `HOLDS (f_use == F_SCALE && f_use_clock == 6'd50 && moving && !shaping && !load_fraction && !clear && result_move && count == 6'd1 && !f_is_look_up);
-    else `HOLDS (!moving && !load_fraction);
-    if (f_is_look_up) `HOLDS (f_use == F_UNUSED && f_unused_for >= 2'd2 && f_shapes);
-    if (f_is_choose && !ready && !ends_next) `HOLDS (f_use == F_UNUSED && f_unused_for >= 2'd1);
-    if (f_is_copy || f_is_fetch) `HOLDS (f_use == F_UNUSED && (f_unused_for >= 2'd1));
+      if (count == 6'd1) assert (f_shapes ? f_use == F_SHAPE && f_use_clock == 6'd19 && shaping && moving && !clear && result_move : f_use == F_UNUSED && f_unused_for >= 2'd2);
+      else assert (f_use == F_SCALE && f_use_clock == count - 6'd1 && moving && !shaping && f_shaped == f_shapes && result_move);
+      if (count == 6'd1) assert (!load_fraction);
+      if (count >= 6'd2) assert (load_fraction == (count == 6'd2) && clear == load_fraction);
+    end else if (f_use != F_UNUSED) assert (f_use == F_SCALE && f_use_clock == 6'd50 && moving && !shaping && !load_fraction && !clear && result_move && count == 6'd1 && !f_is_look_up);
+    else assert (!moving && !load_fraction);
+    if (f_is_look_up) assert (f_use == F_UNUSED && f_unused_for >= 2'd2 && f_shapes);
+    if (f_is_choose && !ready && !ends_next) assert (f_use == F_UNUSED && f_unused_for >= 2'd1);
+    if (f_is_copy || f_is_fetch) assert (f_use == F_UNUSED && (f_unused_for >= 2'd1));
   end
 
 // the half-word of v_end that SCALE selects in each clock; before the first one (counts wrap) the lowest
@@ -356,64 +340,64 @@ endfunction
 // the numbers as they rotate
 always @(posedge clk)
   if (f_begun && f_motion != F_REST) begin
-    if ((f_is_choose && !start_copy) || f_is_fetch || f_is_look_up || f_is_shape || f_is_advance) `HOLDS (f_v_start == f_start);
+    if ((f_is_choose && !start_copy) || f_is_fetch || f_is_look_up || f_is_shape || f_is_advance) assert (f_v_start == f_start);
     if (f_is_take) begin
-      if (count == 6'd1) `HOLDS (f_word == f_end[15:0] && ramp_half_index == 4'd2);
-      if (count == 6'd2) `HOLDS (f_next == f_end[15:0] && f_word == f_end[31:16] && ramp_half_index == 4'd0);
-      if (count <= 6'd3) `HOLDS (f_v_start == f_start);
-      if (count == 6'd3) `HOLDS (f_half == f_end[15:0] && f_next == f_end[31:16] && f_word == f_end[47:32]);
+      if (count == 6'd1) assert (f_word == f_end[15:0] && ramp_half_index == 4'd2);
+      if (count == 6'd2) assert (f_next == f_end[15:0] && f_word == f_end[31:16] && ramp_half_index == 4'd0);
+      if (count <= 6'd3) assert (f_v_start == f_start);
+      if (count == 6'd3) assert (f_half == f_end[15:0] && f_next == f_end[31:16] && f_word == f_end[47:32]);
       if (count == 6'd4)
-        `HOLDS (f_v_start[47:32] == f_end[15:0] && f_half == f_end[31:16] && f_next == f_end[47:32]);
-      if (count == 6'd5) `HOLDS (f_v_start[47:16] == f_start[31:0] && f_half == f_start[47:32]);
+        assert (f_v_start[47:32] == f_end[15:0] && f_half == f_end[31:16] && f_next == f_end[47:32]);
+      if (count == 6'd5) assert (f_v_start[47:16] == f_start[31:0] && f_half == f_start[47:32]);
     end
-    if ((f_is_fetch || f_is_advance) && count >= 6'd7) `HOLDS (ramp_half_index == 4'd3);
-    if ((f_is_fetch || f_is_advance) && count == 6'd8) `HOLDS (f_word == f_end[15:0]);
+    if ((f_is_fetch || f_is_advance) && count >= 6'd7) assert (ramp_half_index == 4'd3);
+    if ((f_is_fetch || f_is_advance) && count == 6'd8) assert (f_word == f_end[15:0]);
     if (loaded && (f_is_choose || f_is_look_up || f_is_shape))
-      `HOLDS (ramp_half_index == 4'd3 && f_word == f_end[15:0] && f_next == f_end[15:0]);
-    if (loaded && (f_is_look_up || f_is_shape)) `HOLDS (f_half == f_end[15:0]);
+      assert (ramp_half_index == 4'd3 && f_word == f_end[15:0] && f_next == f_end[15:0]);
+    if (loaded && (f_is_look_up || f_is_shape)) assert (f_half == f_end[15:0]);
     if (loaded && f_is_scale) begin
-      `HOLDS (ramp_half_index == (count <= 6'd13 ? 4'd3 : count <= 6'd29 ? 4'd2 : count <= 6'd45 ? 4'd0 : 4'd3));
-      `HOLDS (f_word == f_end_half(count - 6'd1));
-      `HOLDS (f_next == f_end_half(count - 6'd2));
-      `HOLDS (f_half == f_end_half(count - 6'd3));
+      assert (ramp_half_index == (count <= 6'd13 ? 4'd3 : count <= 6'd29 ? 4'd2 : count <= 6'd45 ? 4'd0 : 4'd3));
+      assert (f_word == f_end_half(count - 6'd1));
+      assert (f_next == f_end_half(count - 6'd2));
+      assert (f_half == f_end_half(count - 6'd3));
     end
     if (f_is_scale) begin
       for (k = 0; k <= 48; k = k + 1)
-        if (count == k + 2 || (k == 0 && count == 6'd1)) `HOLDS (f_v_start == ((f_start >> k) | (f_start << (48 - k))));
-      if (count >= 6'd2) `HOLDS (moving && !shaping);
-      `HOLDS (f_bit == (count >= 6'd2 ? count - 6'd2 : 6'd0));
+        if (count == k + 2 || (k == 0 && count == 6'd1)) assert (f_v_start == ((f_start >> k) | (f_start << (48 - k))));
+      if (count >= 6'd2) assert (moving && !shaping);
+      assert (f_bit == (count >= 6'd2 ? count - 6'd2 : 6'd0));
     end
-    if (f_is_choose && !ready) `HOLDS (!moving && !velocity_bit && !f_b);
+    if (f_is_choose && !ready) assert (!moving && !velocity_bit && !f_b);
     // the present velocity rotates once while v_start copies it, in two halves
     if (f_is_copy || (f_is_choose && start_copy)) begin
-      `HOLDS (!loaded && !ready);
-      if (count >= 6'd2) `HOLDS (!moving && !velocity_bit && !f_b && f_addend == 25'd0 && !f_both);
-      if (count == 6'd1) `HOLDS (ramp_take_now ? velocity_next == f_present : clear && result_move && f_start == 48'd0);
+      assert (!loaded && !ready);
+      if (count >= 6'd2) assert (!moving && !velocity_bit && !f_b && f_addend == 25'd0 && !f_both);
+      if (count == 6'd1) assert (ramp_take_now ? velocity_next == f_present : clear && result_move && f_start == 48'd0);
       for (k = 0; k <= 23; k = k + 1)
         if (count == k + 2) begin
-          `HOLDS (f_start == f_present);
-          `HOLDS (velocity_next[47:24] == (f_start[47:24] >> k | f_start[47:24] << (24 - k)));
-          `HOLDS (velocity_next[23:0] == (f_start[23:0] >> k | f_start[23:0] << (24 - k)));
-          `HOLDS ((f_v_start[47:24] ^ (f_start[47:24] << (24 - k))) >> (24 - k) == 24'd0);
-          `HOLDS ((f_v_start[23:0] ^ (f_start[23:0] << (24 - k))) >> (24 - k) == 24'd0);
+          assert (f_start == f_present);
+          assert (velocity_next[47:24] == (f_start[47:24] >> k | f_start[47:24] << (24 - k)));
+          assert (velocity_next[23:0] == (f_start[23:0] >> k | f_start[23:0] << (24 - k)));
+          assert ((f_v_start[47:24] ^ (f_start[47:24] << (24 - k))) >> (24 - k) == 24'd0);
+          assert ((f_v_start[23:0] ^ (f_start[23:0] << (24 - k))) >> (24 - k) == 24'd0);
         end
     end
     if (!ready && ((f_is_choose && !start_copy) || f_is_fetch || f_is_take || f_is_advance))
-      `HOLDS (velocity_next == f_present && !result_move);
+      assert (velocity_next == f_present && !result_move);
     // without a ramp the bits of v_start become the velocity
     if (f_is_scale && !loaded) begin
-      if (count == 6'd1) `HOLDS (!moving && !velocity_bit && !f_b);
-      if (count == 6'd2) `HOLDS (!velocity_bit && !f_b && clear && result_move);
-      if (count >= 6'd3) `HOLDS (velocity_bit == f_start[count - 3] && f_b == velocity_bit && f_addend == 25'd0 && result_move);
-      if (count == 6'd3) `HOLDS (!f_both && velocity_next == 48'd0);
-      if (count >= 6'd4) `HOLDS (f_both == f_start[count - 4]);
+      if (count == 6'd1) assert (!moving && !velocity_bit && !f_b);
+      if (count == 6'd2) assert (!velocity_bit && !f_b && clear && result_move);
+      if (count >= 6'd3) assert (velocity_bit == f_start[count - 3] && f_b == velocity_bit && f_addend == 25'd0 && result_move);
+      if (count == 6'd3) assert (!f_both && velocity_next == 48'd0);
+      if (count >= 6'd4) assert (f_both == f_start[count - 4]);
       for (k = 0; k <= 46; k = k + 1)
-        if (count == k + 4) `HOLDS (velocity_next == f_start << (48 - k));
+        if (count == k + 4) assert (velocity_next == f_start << (48 - k));
     end
-    if (ready && f_ready_q && !ends_next && f_without) `HOLDS (f_is_choose && !loaded);
-    if (f_makes && !f_loaded_q) `HOLDS (f_is_choose && !loaded && velocity_next == f_start << 1 && f_both == f_start[47] && f_addend == 25'd0 && result_move);
+    if (ready && f_ready_q && !ends_next && f_without) assert (f_is_choose && !loaded);
+    if (f_makes && !f_loaded_q) assert (f_is_choose && !loaded && velocity_next == f_start << 1 && f_both == f_start[47] && f_addend == 25'd0 && result_move);
     if (f_is_scale && !loaded && count >= 6'd3)
-      `HOLDS (not_zero == ((f_start & ((48'd1 << (count - 3)) - 48'd1)) != 48'd0));
-    if (f_is_scale && count == 6'd2 && !loaded) `HOLDS (!not_zero);
-    if (f_is_scale && count == 6'd1) `HOLDS (!not_zero);
+      assert (not_zero == ((f_start & ((48'd1 << (count - 3)) - 48'd1)) != 48'd0));
+    if (f_is_scale && count == 6'd2 && !loaded) assert (!not_zero);
+    if (f_is_scale && count == 6'd1) assert (!not_zero);
   end

@@ -4,11 +4,7 @@
 // --- Assumptions: the link. A frame is checked word by word; if no word is refused and it ends with a whole ramp, it
 // may be written, with as many words. Data are stable from one clock before their strobe to one clock after it;
 // `bus_msb` of checked data is valid in the strobe and the clock before.
-`ifdef SMALL
-localparam [1:0] F_GAP = 2'd2;
-`else
 localparam [1:0] F_GAP = 2'd3;
-`endif
 reg       f_started = 1'b0;
 wire      f_begun = ~rst;
 reg       f_strobe_q = 1'b0;
@@ -21,9 +17,6 @@ reg       f_select = 1'b0;
 reg [2:0] f_index = 3'd0;  // word of the ramp, 0 .. 4
 reg [2:0] f_since_write = 3'd0;
 (* anyseq *) reg f_go;
-`ifdef SMALL
-reg       f_short = 1'b0;
-`endif
 wire f_strobe = (bus_check | bus_write) & select;
 wire f_last_index = f_index == 3'd4;
 wire f_msb_right = bus_msb == 5'd0 ? bus_data <= 32'd1 : bus_data >> bus_msb == 32'd1;
@@ -58,21 +51,6 @@ always @(posedge clk) begin
     f_writing  <= bus_commit && f_select;
     if (!bus_commit) f_words <= 8'd0;
   end
-`ifdef SMALL
-  // shorter searches for bugs: where a frame may begin, any valid number of ramps may have been checked already (see
-  // `shorter` in promises.toml)
-  small_ramp_queue_reset : assume (rst == !f_started);
-  f_short <= rst | (bus_frame & ~bus_commit) | (bus_write & f_writing & f_words == 8'd1);
-  if (f_short && checked != 0) begin
-    small_ramp_queue_checked :
-    assume (32'd0 + checked + f_ramps + f_to_come <= 1 << DEPTH_LOG2 && !bus_check && !bus_frame);
-    f_words  <= 5 * checked;
-    f_select <= 1'b1;
-    f_gap    <= 2'd0;
-
-    f_checking <= 1'b1;
-  end
-`endif
   if (rst) begin
     {f_checking, f_writing, f_refused} <= 3'b000;
 
@@ -117,9 +95,6 @@ always @(posedge clk) begin
   end
   if (bus_check && select && f_last_index) f_checked <= f_checked + 1'b1;
   if (bus_frame || rst) f_checked <= 0;
-`ifdef SMALL
-  if (f_short) f_checked <= checked;
-`endif
   if (rst || flush) f_to_come <= 0;
   if (rst || flush) f_ramps <= rst ? 0 : f_written;
   if (rst || flush) f_now <= 1'b0;
@@ -197,7 +172,6 @@ always @(posedge clk) begin
   if (f_shown[2]) half_as_written : assert (half == f_shown_word_qq);
 end
 
-`ifdef INVARIANTS
 always @(posedge clk)
   if (f_begun) begin
     assert (32'd0 + f_ramps + f_to_come <= 1 << DEPTH_LOG2);
@@ -241,4 +215,3 @@ always @(posedge clk)
       assert (f_ahead < f_ramps && f_slot == read_ramp[DEPTH_LOG2-1:0] + f_ahead[DEPTH_LOG2-1:0]);
     end
   end
-`endif

@@ -67,7 +67,6 @@ always @(posedge clk)
       assert (read_word == $past(read_word) + $past((take && available) || f_index != 2'd0));
   end
 
-`ifdef INVARIANTS
 always @(posedge clk)
   if (f_started && !$past(rst || flush)) begin
     assert (index == f_index);
@@ -76,4 +75,3 @@ always @(posedge clk)
     assert (!(f_new && f_taken));
     if (f_taken) assert (f_raster);
   end
-`endif

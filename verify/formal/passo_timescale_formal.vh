@@ -77,7 +77,6 @@ always @(posedge clk)
     if (f_rest == 2'd3) rate_is_target_at_rest : assert (rate == $past(rate_target, 2));
   end
 
-`ifdef INVARIANTS
 wire [16:0] f_step = f_slew == 17'd0 ? 17'd1 : f_slew;
 wire [17:0] f_moved_rate = down ? {1'b0, rate} - {1'b0, f_step} : {1'b0, rate} + {1'b0, f_step};
 always @(posedge clk)
@@ -103,4 +102,3 @@ always @(posedge clk)
     if (f_after[6]) assert (not_moved == ~f_moved_rate && change == 17'd0 && !change_carry && f_slew <= F_ONE);
     if (f_after[6]) assert (land == (down ? f_moved_rate[17] || f_moved_rate <= {1'b0, goal} : f_moved_rate > {1'b0, goal}));
   end
-`endif

@@ -51,7 +51,6 @@ always @(posedge clk)
     if (arming && !$past(arming)) arming_for_a_reason : assert ($past(write || forget));
   end
 
-`ifdef INVARIANTS
 always @(posedge clk)
   if (f_begun && $past(f_begun)) begin
     if (armed || arming) assert (f_was_armed);
@@ -65,4 +64,3 @@ always @(posedge clk)
     end
     if (arming) assert (!fired && !latch);
   end
-`endif

@@ -33,7 +33,6 @@ always @(posedge clk)
     if ($past(fed)) fed_is_calm : assert (!stop && !disable_drives);
   end
 
-`ifdef INVARIANTS
 wire [UNIT_LOG2+9:0] f_time = stop ? f_stopped[UNIT_LOG2+9:0] : f_age[UNIT_LOG2+9:0];
 always @(posedge clk)
   if (f_begun && $past(f_begun)) begin
@@ -44,4 +43,3 @@ always @(posedge clk)
     if (stop && !fed) assert (silent);
     if (disable_drives && !fed) assert (stop);
   end
-`endif

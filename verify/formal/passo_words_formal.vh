@@ -2,11 +2,7 @@
 // Promises of the host interface of a bus; included at the end of passo_words.v. The only assumption about the
 // master: a request is stable until it is done.
 
-`ifdef SMALL
-localparam [6:0] F_APART = 7'd5;  // the search skips most clocks of the waits
-`else
 localparam [6:0] F_APART = 7'd63;
-`endif
 reg f_started = 1'b0;
 wire f_begun = f_started && !rst;
 wire f_access = request && !done;
@@ -38,7 +34,7 @@ always @(posedge clk)
     f_gap                 <= 7'd127;
   end
 
-// --- What the master sees: an access is done within 128 clocks, once; an accepted word goes on unchanged and is
+// --- What the master sees: an access is done within 128 clocks, once; an accepted word is passed on unchanged and is
 // exchanged for the reply latched when the word before it had gone
 reg  [ 7:0] f_waits = 8'd0;
 reg         f_open = 1'b0;  // as the master wrote it
@@ -73,7 +69,6 @@ always @(posedge clk)
     f_replied            <= 1'b0;
   end
 
-`ifdef INVARIANTS
 wire f_sending = sending && count >= 7'd2 && count <= 7'd65;  // the first half has gone
 always @(posedge clk)
   if (f_begun) begin
@@ -92,4 +87,3 @@ always @(posedge clk)
     if (done && $past(write && address) && !error) assert (begins && sending);
     if (done && $past(write && !address) && !error) assert (count <= 7'd1);
   end
-`endif

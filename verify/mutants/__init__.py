@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""How many small faults in the sources do the judges see that do not know the model?"""
+"""Mutation testing: the small faults that judges see without knowing the model."""

@@ -2,7 +2,7 @@
 """Mutants that are no faults: yosys proves the module equal to the one it comes from.
 
 Registers of the same name are taken to be equal before a clock, and proved to be so after it: all outputs
-are equal for any inputs. So a mutant that only the neighbours of the module make harmless is not equal here.
+are equal for any inputs. So a mutant that only the neighbors of the module make harmless is not equal here.
 """
 
 import contextlib

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What has become of the mutants: kept in build/mutants/, so that a run goes on where the last one ended."""
+"""The fates of the mutants: kept in build/mutants/, so a run continues where the last one ended."""
 
 import hashlib
 import json

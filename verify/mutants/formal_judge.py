@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from passo.failure import Failure
-from passo.toolchain import environment, paths
+from passo.toolchain import environment
 
 from verify.formal import run as formal
 from verify.mutants.fates import BUILD, Fates, hash_of
@@ -31,38 +31,13 @@ from verify.mutants.netlist import SELECT, WIDTH, Core, Mutant, selected, yosys
 LIMIT = 8  # seconds of the processor; a proof that takes longer says nothing
 PREPARES = 200.0  # seconds of yosys
 WORK = BUILD / "formal"
-# As sby makes the problem of the task `prove`, memories as registers, for smtbmc with bit vectors.
-PROBLEM = """hierarchy -smtcheck
-scc -select; simplemap; select -clear
-memory_nordff
-async2sync
-opt_clean
-formalff -setundef -clk2ff -ff2anyinit -hierarchy
-chformal -live -fair -cover -remove
-opt_clean
-setundef -undriven -anyseq
-opt -fast
-hierarchy -smtcheck
-delete */t:$print
-formalff -assume
-memory_map -formal
-formalff -setundef -clk2ff -ff2anyinit
-dffunmap
-write_smt2 -stbv -wires problem.smt2
-"""
-
-
-def _script(proof: formal.Proof) -> list[str]:
-    """The commands of yosys for the proof itself."""
-    lines = [line.removeprefix("prove: ") for line in proof.commands if not line.startswith("bug: ")]
-    return ["verilog_defines -DINVARIANTS", *lines]
 
 
 def _reads(proof: formal.Proof, module: str) -> bool:
     """Whether the proof has the module, not only its ports."""
     return any(
         line.startswith("read") and " -lib " not in line and f"{module}.v" in line.split()
-        for line in _script(proof)
+        for line in proof.commands
     )
 
 
@@ -138,22 +113,16 @@ def _cells(module: dict[str, Any]) -> Cells:
     return found
 
 
-def _files(proof: formal.Proof) -> dict[str, Path]:
-    """The files of a proof, by the names that it has for them."""
-    found = [line.split() for line in proof.sources]  # where it comes from, after the name that it has there
-    return {Path(names[0]).name: paths.root / names[-1] for names in found}
-
-
 def _copy(proof: formal.Proof, folder: Path) -> None:
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    for name, file in _files(proof).items():
+    for name, file in proof.copies.items():
         shutil.copy(file, folder / name)
 
 
 def _parts(proof: formal.Proof) -> tuple[list[str], list[str]]:
     """The commands of the proof until its modules have their parameters, and those that follow."""
-    lines = _script(proof)
+    lines = proof.commands
     made = [i for i, line in enumerate(lines) if line.startswith("hierarchy")]
     if made:
         return [*lines[: made[-1] + 1], *MADE], lines[made[-1] + 1 :]
@@ -230,9 +199,9 @@ class Problem:
         self.folder = WORK / f"{core.name}_{proof.name}"
         before, after = _parts(proof)
         made = [selected(command, number) for number, many in commands.items() for command in many]
-        script = "\n".join([*before, *made, *after, PROBLEM])
+        script = "\n".join([*before, *made, *after, formal.PROBLEM])
         identity = self.folder / "hash"
-        hashed = hash_of(_files(proof).values(), script)
+        hashed = hash_of(proof.copies.values(), script)
         if self.numbers and not (identity.exists() and identity.read_text() == hashed):
             _copy(proof, self.folder)
             yosys(self.folder, script, PREPARES)
@@ -280,7 +249,7 @@ def judge(
         for proof in proofs_of(mutant.module):
             groups.setdefault(proof, []).append(mutant)
     for proof, group in sorted(groups.items(), key=lambda item: item[0].slow):
-        name = f"proof {proof.name} {hash_of(_files(proof).values(), repr(proof))} {limit} s"
+        name = f"proof {proof.name} {hash_of(proof.copies.values(), repr(proof))} {limit} s"
         waiting = [mutant for mutant in group if fates.get(mutant.name).waits(name)]
         if not waiting:
             continue

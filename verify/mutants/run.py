@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Make mutants of the RTL and of the C sources, and let the judges play that do not know the model.
+"""Make mutants of RTL and C sources, and try them on the judges that do not know the model.
 
     .venv/bin/python -m verify.mutants.run [--seed N] [--only NAME,...] [--each N] [--count N]
 
-`--only` takes `rtl`, `c`, modules of rtl/ and files of the driver, the planner and G-code. A run goes on
+`--only` takes `rtl`, `c`, modules of rtl/ and files of the driver, the planner and G-code. A run continues
 where the last one ended: the fates are kept in build/mutants, and all that was killed is killed once more
 when the sources or the judges are others. A run of everything writes docs/reference/mutants.md.
 """
@@ -66,7 +66,7 @@ def _chosen(only: Sequence[str], kind: str, ending: str) -> list[str] | None:
 def main() -> None:
     """Run, print the table, and exit with 1 if the judges find fault with the sources themselves."""
     parser = argparse.ArgumentParser(prog="python -m verify.mutants.run", description=__doc__.split("\n")[0])
-    parser.add_argument("--seed", type=int, default=1, help="of the mutants and of the histories")
+    parser.add_argument("--seed", type=int, default=1, help="seed of mutants and scenarios")
     parser.add_argument("--only", default="", help="rtl, c, modules, files")
     parser.add_argument("--each", type=int, default=EACH, help="mutants of a module (default: %(default)s)")
     parser.add_argument("--count", type=int, default=COUNT, help="mutants in C (default: %(default)s)")

@@ -45,7 +45,7 @@ static void die_in_move(struct bridge *bridge)
 
 	arm(bridge);
 	enum passo_error error = passo_move_by_speed(&bridge->passo, &move);
-	bridge_note(bridge, "move while the wire dies", error);
+	bridge_note(bridge, "move while the link fails", error);
 	reconnect(bridge);
 	world_run(world, 30000);
 	bridge_count_pins(bridge);
@@ -53,7 +53,7 @@ static void die_in_move(struct bridge *bridge)
 	bridge_want(bridge, &move);
 	const bool all = memcmp(bridge->made, bridge->wanted, sizeof bridge->made) == 0;
 	if (!all && (error == PASSO_OK || !none))
-		world_fail(world, world->clock, "move while the wire died, %s: neither made nor left out",
+		world_fail(world, world->clock, "move while the link failed, %s: neither made nor left out",
 		    passo_error_name(error));
 	bridge_agree(bridge);
 	if (error != PASSO_OK) {
@@ -66,7 +66,7 @@ static void die_in_enable(struct bridge *bridge)
 {
 	bridge_finish(bridge);
 	arm(bridge);
-	bridge_note(bridge, "disable while the wire dies", passo_enable(&bridge->passo, 0, false));
+	bridge_note(bridge, "disable while the link fails", passo_enable(&bridge->passo, 0, false));
 	reconnect(bridge);
 	bridge_must(bridge, "disable", passo_enable(&bridge->passo, 0, false));
 	world_run(bridge->world, 100);
@@ -79,7 +79,7 @@ static void die_in_zero(struct bridge *bridge)
 {
 	bridge_finish(bridge);
 	arm(bridge);
-	bridge_note(bridge, "zero while the wire dies", passo_zero(&bridge->passo));
+	bridge_note(bridge, "zero while the link fails", passo_zero(&bridge->passo));
 	reconnect(bridge);
 	bridge_must(bridge, "zero", passo_zero(&bridge->passo));
 	memset(bridge->made, 0, sizeof bridge->made);
@@ -101,7 +101,7 @@ static void die_in_rate(struct bridge *bridge, unsigned which)
 	else
 		error = passo_override(&bridge->passo, 1u + scenario_draw(bridge->random, 100));
 	bridge_note(bridge,
-	    which == 0u   ? "hold while the wire dies"
+	    which == 0u   ? "hold while the link fails"
 	    : which == 1u ? "resume ..."
 	                  : "override ...",
 	    error);
@@ -115,7 +115,7 @@ static void die_in_rate(struct bridge *bridge, unsigned which)
 
 static void die_in_stop(struct bridge *bridge, bool softly)
 {
-	const char *what = softly ? "stop while the wire dies" : "abort while the wire dies";
+	const char *what = softly ? "stop while the link fails" : "abort while the link fails";
 
 	arm(bridge);
 	bridge_note(bridge, what, softly ? passo_stop(&bridge->passo) : passo_abort(&bridge->passo));
@@ -123,7 +123,7 @@ static void die_in_stop(struct bridge *bridge, bool softly)
 	bridge_check_stopped(bridge, what);
 	if (scenario_chance(bridge->random, 50)) {
 		arm(bridge);
-		bridge_note(bridge, "clear while the wire dies", passo_clear(&bridge->passo));
+		bridge_note(bridge, "clear while the link fails", passo_clear(&bridge->passo));
 		reconnect(bridge);
 	}
 	bridge_recover(bridge);

@@ -13,7 +13,7 @@ struct wire {
 	struct bridge_counts *counts;
 	uint32_t one_in;  /* one bit in one_in is flipped; 0: none */
 	uint32_t worse;   /* percentage of frames with a lost or doubled clock, or cut */
-	uint32_t dies_in; /* frames until the link dies; 0: never */
+	uint32_t dies_in; /* frames until the link fails; 0: never */
 	uint32_t dies_at; /* bit of that frame at which it dies */
 	bool dead, level; /* of MISO when dead */
 	/* an exchange in two halves */

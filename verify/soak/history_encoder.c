@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * At the end of a history of a machine: an encoder that turns by so many counts, one axis that does not
+ * At the end of a history of a machine: an encoder that turns by some counts, one axis that does not
  * follow it, and a thread that does.
  */
 #include "history_player.h"
@@ -45,7 +45,7 @@ static void expect(struct player *player, const char *what, uint32_t seen, uint3
 		world_fail(player->world, player->world->clock, "%s: %x instead of %x", what, seen, wanted);
 }
 
-/* Counts, following error, index, and both lines at once. */
+/* Counts, following error, index, and both lines together. */
 static void check_counts(struct player *player, struct scenario_random *random, unsigned axis, uint32_t setup)
 {
 	struct world *world = player->world;
@@ -94,7 +94,8 @@ static void check_counts(struct player *player, struct scenario_random *random, 
 	        | (indexes != 0u ? (uint32_t)position & 0xFFFFu : 0u));
 }
 
-/* A move of one axis, whose encoder stands: it stops as the setup says when the error is at its limit. */
+/* A move of one axis, whose encoder is stationary: it stops as the setup says when the error is at its limit.
+ */
 static void check_following(
     struct player *player, struct scenario_random *random, unsigned axis, uint32_t setup)
 {

@@ -212,7 +212,7 @@ static void last_move(struct player *player, struct scenario_random *random, uns
 		move.velocity = velocity;
 		move.rate = rate;
 		if (!slow
-		    || a + 1u < player_axes(player)) /* the steps of that one wait for the set-up of DIR */
+		    || a + 1u < player_axes(player)) /* the steps of that one wait for the DIR setup time */
 			player_check_steps(player, channel, a, &move);
 		const int32_t steps = (int32_t)line.steps[a];
 		const int32_t wanted = (line.directions >> a & 1u) != 0u ? -steps : steps;

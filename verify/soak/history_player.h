@@ -73,7 +73,7 @@ void player_shaped_move(struct player *player, struct scenario_random *random, u
 uint64_t player_runs(const struct player *player, unsigned channel, uint64_t from, bool running);
 /* STEP and DIR of channel 0 of a few clocks, full rate, and RUN. */
 void player_prepare(struct player *player);
-/* After that, at rest: lines at a constant speed for so many ticks. Returns a clock before it. */
+/* After that, at rest: lines at a constant speed for `ticks` ticks. Returns a clock before it. */
 uint64_t player_start(
     struct player *player, const struct passo_line *lines, size_t count, uint64_t velocity, uint32_t ticks);
 /* Until it is at rest again; returns the clock in which it is running first. */

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
- * Pokes: any frames while anything happens at the pins. Not judged: the core must answer, and move again at
- * the end.
+ * Register fuzzing: any frames while anything happens at the pins. Not judged: the core must answer, and move
+ * again at the end.
  */
 #include "history_player.h"
 #include "poke.h"
 
-/* Clocks of pokes in a history, and clocks until any filter and any timing has ended. */
+/* Clocks of fuzzing in a history, and clocks until any filter and any timing has ended. */
 #define POKES 20000u
 #define FORGETS 70000u
 /* Frames that fill the queue of the raster more often than not. */
@@ -70,7 +70,7 @@ static void poke(struct player *player, struct scenario_random *random)
 	player->counts->refused += reply == PASSO_REPLY_REFUSED ? 1u : 0u;
 	if (reply != PASSO_REPLY_OK && reply != PASSO_REPLY_REFUSED)
 		world_fail(
-		    world, world->clock, "no sane reply to a poke at %03x: %d", poke.address, (int)reply);
+		    world, world->clock, "no sane reply to a frame at %03x: %d", poke.address, (int)reply);
 }
 
 static void write(struct player *player, uint16_t address, uint32_t word)
@@ -92,7 +92,7 @@ static uint32_t some_trigger(struct scenario_random *random, unsigned axes)
 	     | 1u << PASSO_CHANNEL_TRIGGER_ARM_LSB;
 }
 
-/* What would seldom become of single pokes: a laser, a raster, a compare, points of shapes, a profile that
+/* What single frames would seldom become: a laser, a raster, a compare, points of shapes, a profile that
  * follows an encoder, and a motion. */
 static void set_up(struct player *player, struct scenario_random *random)
 {

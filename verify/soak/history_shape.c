@@ -10,7 +10,7 @@
 #define ONE_Q49 (UINT64_C(1) << 49)
 #define RAMPS 2u
 #define TICKS_MAX 24u
-/* Every second substep is a step of the first axis; all of them are told apart. */
+/* Every second substep is a step of the first axis; all of them are distinguished. */
 #define STEPS_MOST 60u
 #define WRITTEN 24u
 

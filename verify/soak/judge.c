@@ -137,7 +137,7 @@ static void sort_facts(struct world *world)
 	}
 }
 
-/* What happens in a machine as time goes on. */
+/* What happens in a machine as time passes. */
 static void go_on(struct judge *judge)
 {
 	judge_silence(judge);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * What must be known before a motion begins: inputs that have stood still for a period of the filter, and a
+ * What must be known before a motion begins: inputs that have been stable for a period of the filter, and a
  * trigger that is armed.
  */
 #include "judge_state.h"

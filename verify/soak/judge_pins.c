@@ -30,7 +30,7 @@ static void see_step(struct judge *judge, unsigned c, unsigned a)
 		axis->highest = axis->position;
 	judge->counts->steps++;
 	if (judge->now < axis->setup_over)
-		FAIL(judge, "channel %u axis %u: DIR set-up is %llu clocks short", c, a,
+		FAIL(judge, "channel %u axis %u: DIR setup is %llu clocks short", c, a,
 		    (unsigned long long)(axis->setup_over - judge->now));
 	if (channel->silent && judge->now > channel->silent_from)
 		FAIL(judge, "channel %u axis %u: a step after %s", c, a, channel->silent);

@@ -127,7 +127,7 @@ void judge_see_levels(struct judge *judge, unsigned input, unsigned a, bool inve
 bool judge_may(const struct level *level, uint64_t from, uint64_t until);
 bool judge_must(const struct level *level, uint64_t clock);
 uint64_t judge_next_change(const struct judge *judge, unsigned input, unsigned a);
-/* ... whether they are known: not after a reset, a change of polarity or filter, until they have stood still
+/* ... whether they are known: not after a reset, a change of polarity or filter, until they have been stable
  * ... */
 void judge_forget(struct judge *judge);
 void judge_changes(struct judge *judge, unsigned input, unsigned a);

@@ -18,7 +18,7 @@ void judge_machine_step(struct judge *judge, unsigned a)
 	const bool soft = (machine->limit_soft >> a & 1u) != 0u && (closed >> a & 1u) == 0u;
 
 	if (!soft && judge_must(limit, judge->now) && judge_must(limit, judge->now - LAST_STEP - 1u))
-		FAIL(judge, "axis %u: a step towards its active limit switch", a);
+		FAIL(judge, "axis %u: a step toward its active limit switch", a);
 	for (unsigned i = 0; i < machine->event_count; i++) {
 		const struct stop_event *event = &machine->events[i];
 

@@ -132,7 +132,7 @@ void judge_arm(struct judge *judge, uint32_t value)
 		judge_add_event(judge, PASSO_CAUSE_TRIGGER, false, judge->now, NEVER);
 }
 
-/* It takes the level of its source anew. */
+/* It takes the level of its source again. */
 void judge_rearm(struct judge *judge)
 {
 	struct trigger *trigger = &judge->machine.trigger;
@@ -207,7 +207,7 @@ void judge_turn(struct judge *judge, unsigned input, unsigned a)
 static void count(struct judge *judge, unsigned a, bool a_changes, bool b_changes)
 {
 	struct shaft *shaft = &judge->machine.shafts[a];
-	/* A leads upwards: after a change of A the levels differ, after one of B they are the same */
+	/* A leads upward: after a change of A the levels differ, after one of B they are the same */
 	const bool differ = (shaft->a != a_changes) != (shaft->b != b_changes);
 
 	shaft->a = shaft->a != a_changes;

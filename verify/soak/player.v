@@ -2,7 +2,7 @@
 // Replays a recorded history to the core and compares every output pin after every clock.
 //
 // Each line of the record is a run of clocks (hexadecimal count) with its inputs and the outputs after each of them, in
-// the order of player_pins.vh. A run of 0 clocks: without a clock the inputs lead to these outputs.
+// the order of player_pins.vh. A run of 0 clocks: the outputs follow the inputs asynchronously.
 // Plusarg: +record=FILE. Prints "same CLOCKS", or the first difference.
 `resetall
 `default_nettype none

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Frames of any kind, to poke at a machine.
+ * Frames of any kind, to fuzz the registers of a machine.
  */
 #include "poke.h"
 

@@ -77,7 +77,7 @@ enum scenario_kind {
 	SCENARIO_NOISE, /* glitches and flicker of any input */
 	SCENARIO_TURN,  /* an encoder slips or is turned */
 	SCENARIO_ARM,
-	SCENARIO_SILENCE, /* the host says nothing until the watchdog bites */
+	SCENARIO_SILENCE, /* the host says nothing until the watchdog trips */
 	SCENARIO_MEASURE, /* a read of what was latched and counted */
 	SCENARIO_KINDS
 };

@@ -155,7 +155,7 @@ static void close_early(struct scenario *scenario, enum passo_input input, uint8
 	scenario_add(scenario, &action);
 }
 
-/* Again and again a line towards switches that are active, or off them. */
+/* Again and again a line toward switches that are active, or off them. */
 static void add_tries(struct scenario *scenario)
 {
 	const uint8_t low = (uint8_t)scenario_draw(&scenario->random, 1u << AXES);

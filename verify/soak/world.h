@@ -54,7 +54,7 @@ struct world_fact {
 /* Events in the model at which disturbances can be aimed. The judge does not use them. */
 enum world_event_kind {
 	EVENT_STATE,    /* state of the motion */
-	EVENT_GAP,      /* a motion has ended and the next one is prepared at once */
+	EVENT_GAP,      /* a motion has ended and the next one is prepared immediately */
 	EVENT_STOPPING, /* a soft stop starts */
 	EVENT_SLEW,     /* slew tick during a motion */
 	EVENT_RATE,     /* the rate changes */
@@ -164,7 +164,7 @@ const struct world_rtl *world_load(const char *library);
 /* Powers up the core. False if the parameters do not match the Verilated core. */
 bool world_open(struct world *world, const struct passo_parameters *parameters, const struct world_rtl *rtl);
 void world_close(struct world *world);
-/* Completes the record; and then takes the enables away by e-stop, without a clock. */
+/* Completes the record; then deasserts the enables by e-stop, asynchronously. */
 void world_end_record(struct world *world);
 void world_record_estop(struct world *world);
 

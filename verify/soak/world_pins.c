@@ -59,7 +59,7 @@ static void turn_shafts(struct world *world)
 		const bool up = shaft->due > 0;
 		const bool even = (shaft->place & 1u) == 0u;
 
-		/* A leads: upwards it changes first, at the even places of the cycle */
+		/* A leads: upward it changes first, at the even places of the cycle */
 		invert(world, up == even ? PASSO_INPUT_ENCODER_A : PASSO_INPUT_ENCODER_B, (uint8_t)(1u << a));
 		shaft->place = (uint8_t)((shaft->place + (up ? 1u : 3u)) & 3u);
 		shaft->due -= up ? 1 : -1;

@@ -75,7 +75,7 @@ class AxisSteps:
         return -1 if bool(bit) != self.timing.direction_inverted else 1
 
     def stand(self, timing: PinTiming, step_bit: int, dir_bit: int) -> None:
-        """Begin, or go on with another timing, from pins that stand."""
+        """Begin, or continue with another timing, from stable pins."""
         self.timing = timing
         self.active = self.step_level(step_bit)
         self.direction = self.dir_level(dir_bit)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// STEP and DIR of each axis as a logic analyser shows them, and the timing error of each step.
+// STEP and DIR of each axis as a logic analyzer shows them, and the timing error of each step.
 "use strict";
 
 const ROW = 1.5;

@@ -184,7 +184,7 @@ class ToolPath {
             this.drawScale(ctx, fastest, unit(this.across.value), width - 90);
         }
         const every = part?.every ?? 1;
-        this.note.textContent = every > 1 ? `every ${grouped(every)}th step drawn` : part ? "what is in view is drawn strong" : sameUnit ? "coloured by the speed along it" : "";
+        this.note.textContent = every > 1 ? `every ${grouped(every)}th step drawn` : part ? "what is in view is drawn strong" : sameUnit ? "colored by the speed along it" : "";
         const [first, last] = [whole[0], whole[whole.length - 1]];
         for (const [point, color] of [[first, styleOf("--good")], [last, styleOf("--bad")]]) {
             ctx.fillStyle = color;

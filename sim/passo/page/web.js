@@ -65,9 +65,9 @@ class Machine {
             new Uint8Array(this.c.memory.buffer).set(bytes, this.c.line());
             const goes = this.c.type(bytes.length), answer = this.said();
             if (line !== "enable") text += `> ${line}\n${answer}`;
-            if (!goes) throw new Error("the motion stands: it is held, or waits for sync");
+            if (!goes) throw new Error("nothing moves: the motion is held, or waits for sync");
         }
-        if (!this.c.wait()) text += "the motion stands: it is held, or waits for sync\n";
+        if (!this.c.wait()) text += "nothing moves: the motion is held, or waits for sync\n";
         text += this.said();
         return { text, events: this.events() };
     }

@@ -121,7 +121,7 @@ static enum passo_error open_core(void)
 	return error;
 }
 
-/* Until there is a core at rest. Each new error is told. */
+/* Until there is a core at rest. Each new error is reported. */
 static void connect(void)
 {
 	enum passo_error told = PASSO_OK;

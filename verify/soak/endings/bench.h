@@ -27,12 +27,12 @@ struct bench {
 	struct passo_pin_event pins; /* the last ones */
 	uint32_t random;
 	uint64_t late;    /* clocks that the host loses before each frame */
-	uint64_t in_time; /* clocks from a read of the state until a push is over: just so; 0: at once */
+	uint64_t in_time; /* clocks from a read of the state until a push is over: just so; 0: immediately */
 	uint64_t looked;  /* clock of the last read of the state */
 	unsigned frames;  /* so far */
-	unsigned dies_in; /* frames until the host dies in one of them; 0: never */
+	unsigned dies_in; /* frames until the host fails in one of them; 0: never */
 	jmp_buf death;
-	uint64_t spindle_period, spindle_next; /* clocks from count to count, 0: it stands */
+	uint64_t spindle_period, spindle_next; /* clocks from count to count, 0: at rest */
 	unsigned spindle;                      /* counts so far */
 	unsigned compares;                     /* pulses of the compare pin */
 	uint64_t powered;                      /* clock of the last rise of a power pin */

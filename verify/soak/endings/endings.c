@@ -257,9 +257,9 @@ static void judge_place(struct bench *bench, const struct scene *scene)
 	for (unsigned a = 0; a < AXES; a++) {
 		const struct pulses *pulses = &bench->axis[a];
 		if (pulses->lowest < scene->low[a])
-			bench_blame(bench, "below what it was told", pulses->lowest, scene->low[a]);
+			bench_blame(bench, "below its lower bound", pulses->lowest, scene->low[a]);
 		if (pulses->highest > scene->high[a])
-			bench_blame(bench, "above what it was told", pulses->highest, scene->high[a]);
+			bench_blame(bench, "above its upper bound", pulses->highest, scene->high[a]);
 	}
 	const double made = bench->axis[0].position - scene->start[0];
 	const double share =
@@ -382,7 +382,7 @@ static void judge_state(
 	const bool comes = wanted != PASSO_OK && !may_have_ended;
 	const enum passo_error error = comes ? await(bench, scene) : finish(bench, scene);
 
-	/* the switch that was looked for may have come first */
+	/* the switch that it seeks may have come first */
 	const bool is_sought = error == PASSO_ERROR_TRIGGER && is_task(scene->operation);
 	if (error != wanted && !is_sought && !(may_have_ended && error == PASSO_OK))
 		bench_blame(bench, passo_error_name(error), (long)error, (long)wanted);
@@ -409,7 +409,7 @@ static void judge_state(
 	release(bench);
 }
 
-/* What is left undisturbed ends where it was told. */
+/* What is left undisturbed ends at its target. */
 static void judge_end(struct bench *bench, const struct scene *scene)
 {
 	const bool undisturbed = scene->ending == END_HOLD || scene->ending == END_SECOND

@@ -34,7 +34,7 @@ enum ending {
 	END_ESTOP,
 	END_TRIGGER,      /* its soft stop */
 	END_HARD_TRIGGER, /* its hard stop */
-	END_SILENCE,      /* of the host, until the watchdog bites */
+	END_SILENCE,      /* of the host, until the watchdog trips */
 	END_SECOND,       /* the call once more */
 	ENDINGS
 };

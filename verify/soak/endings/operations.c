@@ -186,7 +186,7 @@ static enum passo_error begin_jog(struct bench *bench, struct scene *scene, bool
 {
 	const int32_t steps = scene->target[0] - scene->start[0];
 	const struct passo_jog jog = {.steps = endless ? 0 : steps,
-	    .backwards = steps < 0,
+	    .backward = steps < 0,
 	    .speed = Q32(scene->speed),
 	    .acceleration = Q32(scene->acceleration)};
 

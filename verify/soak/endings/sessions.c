@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * A host dies in a frame of what it does, another one opens the core and moves: nothing of the first acts.
+ * A host fails in a frame of what it does, another one opens the core and moves: nothing of the first acts.
  */
 #include "sessions.h"
 
@@ -66,7 +66,7 @@ static void live(struct bench *bench, struct scene *scene)
 	}
 }
 
-/* A motion that goes on is ended, or ends. */
+/* A motion that continues is ended, or ends. */
 static void take_over(struct bench *bench, const struct scene *scene)
 {
 	struct passo *passo = &bench->passo;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The host dies, another one opens; docs/driver.md has the table of what it finds and does.
+ * The host fails, another one opens; docs/driver.md has the table of what it finds and does.
  */
 #ifndef SOAK_ENDINGS_SESSIONS_H
 #define SOAK_ENDINGS_SESSIONS_H
