@@ -4,25 +4,32 @@
     python -m benchmarks.path_adversary [PATHS [SEED [--keep]]]
 
 With --keep the smallest cases go to benchmarks/path_worst.json; tests/test_path_search.py has all of it.
+Batches that are done are kept in build/path_search, by what they depend on: a run that was ended goes on.
 """
 
+import hashlib
+import json
 import os
 import sys
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from passo.console import console, progress
+from passo.output import write_text
 from passo.toolchain import paths
 
 from benchmarks.path_measure import KINDS, Measured, compare, measure, play
-from benchmarks.path_paths import Case, read_cases, write_cases
+from benchmarks.path_paths import Case, case_of, read_cases, write_cases
 from benchmarks.path_search import BeyondError, search
 
 PATHS, BATCH = 10_000, 50
 WORST = paths.root / "benchmarks" / "path_worst.json"
 OPEN = paths.root / "benchmarks" / "path_open.json"  # beyond a bound to this day
+DONE = paths.build / "path_search"
+SOURCES = ("c_model", "sim/passo", "benchmarks", "tests/helpers")  # what a figure depends on
 FIGURES: dict[str, Callable[[Measured], float]] = {
     "unlimited": lambda one: one.unlimited,
     "look_ahead": lambda one: one.look_ahead,
@@ -60,6 +67,38 @@ class Found:
             self.beyond[kind] = self.beyond.get(kind, 0) + count
             self.batches.setdefault(kind, seed)
 
+    def to_json(self) -> str:
+        """In a line."""
+        worst = {name: (value, case.to_json()) for name, (value, case) in self.worst.items()}
+        return json.dumps({"paths": self.paths, "worst": worst, "beyond": self.beyond})
+
+
+def found_of(text: str) -> Found:
+    """Those of a batch, from its line."""
+    data = json.loads(text)
+    worst = {name: (value, case_of(case)) for name, (value, case) in data["worst"].items()}
+    return Found(data["paths"], worst, data["beyond"])
+
+
+def done_in() -> Path:
+    """The directory of the batches that these sources have done."""
+    digest = hashlib.sha256()
+    for top in SOURCES:
+        for path in sorted((paths.root / top).rglob("*.[chp]*")):
+            if path.suffix in (".c", ".h", ".py"):
+                digest.update(path.read_bytes())
+    return DONE / digest.hexdigest()[:16]
+
+
+def kept_batch(folder: Path, seed: int, count: int) -> Found:
+    """A batch, or what an earlier run has kept of it."""
+    kept = folder / f"{seed}-{count}.json"
+    if kept.exists():
+        return found_of(kept.read_text())
+    found = batch(seed, count)
+    write_text(kept, found.to_json() + "\n")
+    return found
+
 
 def batch(seed: int, count: int) -> Found:
     """Draw and measure `count` paths."""
@@ -88,11 +127,12 @@ def smallest(kind: str, seed: int, count: int) -> BeyondError | None:
 
 def adversaries(count: int = PATHS, seed: int = 1) -> Found:
     """Measure `count` paths on all cores."""
-    found, jobs, told = Found(), {}, 0
+    found, jobs, told, folder = Found(), {}, 0, done_in()
+    folder.mkdir(parents=True, exist_ok=True)
     with progress("adversarial paths", count) as report, ProcessPoolExecutor(os.cpu_count()) as pool:
         for number in range(-(-count // BATCH)):
             own = seed * 1_000_003 + number
-            jobs[pool.submit(batch, own, min(BATCH, count - number * BATCH))] = own
+            jobs[pool.submit(kept_batch, folder, own, min(BATCH, count - number * BATCH))] = own
         for job in as_completed(jobs):
             found.add(job.result(), jobs[job])
             report(min(found.paths, count))

@@ -138,6 +138,23 @@ def substeps_under(ramps: Sequence[Any], tick_log2: int) -> float:
     return (total << tick_log2) / ONE
 
 
+RANDOM = {
+    1: "a fast line in a curve between two slower ones, limited by its bends, not by their feeds",
+    4: "a ramp that comes down over less than its length, because it may not be steeper",
+    7: "the same, begun with what the ramp before has left of a steeper line",
+    18: "constant speed behind a corner, for as long as the speed there needs it, not that of later ramps",
+}
+
+
+@pytest.mark.parametrize("number", RANDOM)
+def test_a_random_polyline_keeps_all_limits(number: int) -> None:
+    """Each has one thing that was wrong in the planner, or in the judge."""
+    *_, lines = path_cases.wanderings(number + 1)
+    settings = replace(MACHINE, tolerance=0)
+    verdict = judge(lines, settings, play(lines, settings))
+    assert verdict.problems == []
+
+
 @pytest.mark.parametrize("profile", ["linear", "cosine", "sigmoid", "jerk"])
 def test_the_ramps_cover_exactly_the_substeps_of_the_lines(profile: str) -> None:
     """However many ramps there are, nothing is left at the end, and no ramp is steeper than it may be."""

@@ -180,9 +180,9 @@ static uint64_t reach_of(const struct passo_path_planner *path, uint32_t index,
     const struct passo_path_item *item, const struct passo_path_item *next)
 {
 	const uint64_t end = end_square(item, next), length = (uint64_t)item->substeps << 32;
-	const uint64_t behind = passo_path_flat(path, index + 1, index, end);
+	const uint64_t behind = passo_path_flat(path, index + 1, index, end, true);
 	const uint64_t flat =
-	    passo_path_smaller(behind + passo_path_flat(path, index, index, item->corner), length);
+	    passo_path_smaller(behind + passo_path_flat(path, index, index, item->corner, false), length);
 	const uint64_t most = flat == 0 && passo_path_halves(item) == 1
 	                        ? end + passo_path_fall(item, end)
 	                        : passo_path_before(item, end, length - flat, behind);

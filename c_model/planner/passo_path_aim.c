@@ -100,7 +100,8 @@ static struct passo_path_aim find_aim(
 			}
 			if (is_enough(path, &aim, &parts[i]))
 				return aim;
-			if (aim.kind != parts[i].kind || aim.length == 0)
+			/* what a ramp of whole ticks has left of the line before has no say */
+			if (aim.kind != parts[i].kind || aim.length <= parts[i].length / 64)
 				aim.first = aim.slope = parts[i].slope;
 			aim.slope = passo_path_larger(aim.slope, parts[i].slope);
 			aim.kind = parts[i].kind;

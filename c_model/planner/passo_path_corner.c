@@ -51,14 +51,15 @@ static void bend_lines(const struct passo_path_planner *path, const int32_t *uni
 }
 
 #ifndef PASSO_WITHOUT_ROUNDING
-/* What an axis has of its acceleration when a line has its slope, UQ0.16. */
-static uint32_t part_of(
+/* What an axis has of its acceleration when a line has its slope, Q1.15. */
+static int32_t part_of(
     const struct passo_path_planner *path, uint64_t slope, const int32_t *unit, uint32_t axis)
 {
 	const uint64_t part =
 	    passo_mul_div(slope, passo_path_size32(unit[axis]), 2 * path->axis[axis].acceleration);
+	const int32_t size = (int32_t)passo_path_smaller(part >> (PASSO_PATH_UNIT_BITS - 15), INT16_MAX);
 
-	return (uint32_t)passo_path_smaller(part >> (PASSO_PATH_UNIT_BITS - 15), INT16_MAX);
+	return unit[axis] < 0 ? -size : size;
 }
 
 /* Of the axis of which the lines beside a lone corner, at their slopes, and its rounding have the most. Where
@@ -72,18 +73,23 @@ static void find_rounding(const struct passo_path_planner *path, const int32_t *
 
 	if (!before && !behind)
 		return;
+	item->valley = before && behind;
 	item->turn = (uint32_t)((before ? rounding->before : rounding->behind) >> 16);
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		const uint64_t change = passo_path_size((int64_t)unit[axis] - path->at.direction[axis]);
+		const int64_t turn = (int64_t)unit[axis] - path->at.direction[axis];
+		const uint64_t change = passo_path_size(turn);
 		if (change == 0)
 			continue;
 		const uint64_t bend = passo_mul_div(path->axis[axis].acceleration, over, change);
 		const uint32_t needed = (uint32_t)passo_mul_div(
 		    passo_path_smaller(square, bend), sides * INT16_MAX, passo_path_larger(bend, 1));
-		const uint32_t lost = sides
-		                    * ((before ? part_of(path, slope, path->at.direction, axis) : 0)
-		                        + (behind ? part_of(path, item->slope, unit, axis) : 0));
+		const int32_t first = before ? part_of(path, slope, path->at.direction, axis) : 0;
+		const int32_t second = behind ? part_of(path, item->slope, unit, axis) : 0;
+		const uint32_t lost = sides * (passo_path_size32(first) + passo_path_size32(second));
 
+		/* down before it and up behind it, the axis has the difference the way that it turns */
+		if ((turn < 0 ? first - second : second - first) + (int32_t)needed > 2 * INT16_MAX)
+			item->valley = false;
 		if (lost + needed > (uint32_t)item->lost + item->needed) {
 			item->lost = (uint16_t)lost;
 			item->needed = (uint16_t)needed;

@@ -284,17 +284,40 @@ uint64_t passo_path_end_square(const struct passo_path_planner *path, uint32_t i
 bool passo_path_is_settled(const struct passo_path_planner *path, uint32_t index);
 
 /* Length on either side of the corner at the start of an item, of which `line` is one, over which the path
- * keeps a square, so that the rounding of a lone corner has what it needs of the acceleration. */
+ * keeps a square, so that the rounding of a lone corner has what it needs of the acceleration. A `valley`,
+ * before which the path comes down, may do without. */
 #ifdef PASSO_WITHOUT_ROUNDING
-static inline uint64_t passo_path_flat(
-    const struct passo_path_planner *path, uint32_t index, uint32_t line, uint64_t square)
+static inline void passo_path_pass(struct passo_path_planner *path, uint64_t velocity)
 {
-	(void)path, (void)index, (void)line, (void)square;
+	(void)path, (void)velocity;
+}
+
+static inline uint64_t passo_path_passing(const struct passo_path_planner *path, uint64_t square)
+{
+	(void)path;
+	return square;
+}
+
+static inline uint64_t passo_path_flat(
+    const struct passo_path_planner *path, uint32_t index, uint32_t line, uint64_t square, bool valley)
+{
+	(void)path, (void)index, (void)line, (void)square, (void)valley;
 	return 0;
 }
 #else
+/* The ramps pass the start of an item; and the square there, when they are in it with another one. */
+static inline void passo_path_pass(struct passo_path_planner *path, uint64_t velocity)
+{
+	path->passing = passo_path_square_of(velocity);
+}
+
+static inline uint64_t passo_path_passing(const struct passo_path_planner *path, uint64_t square)
+{
+	return passo_path_smaller(path->passing, square);
+}
+
 uint64_t passo_path_flat(
-    const struct passo_path_planner *path, uint32_t index, uint32_t line, uint64_t square);
+    const struct passo_path_planner *path, uint32_t index, uint32_t line, uint64_t square, bool valley);
 #endif
 
 /* Updates `reach` after a line has been added. */

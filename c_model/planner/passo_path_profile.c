@@ -30,8 +30,15 @@ static unsigned put(struct passo_path_part *parts, unsigned count, enum passo_pa
 }
 
 #ifndef PASSO_WITHOUT_ROUNDING
+/* Whether the path passes the corner at the start of an item at the highest speed there, from which it need
+ * not come down any further. A ramp that comes down to there ends within a tick. */
+static bool is_valley(const struct passo_path_item *item, uint64_t square)
+{
+	return item->valley && item->reach == item->corner && square + square / 128 >= item->reach;
+}
+
 uint64_t passo_path_flat(
-    const struct passo_path_planner *path, uint32_t index, uint32_t line, uint64_t square)
+    const struct passo_path_planner *path, uint32_t index, uint32_t line, uint64_t square, bool valley)
 {
 	const struct passo_path_item *item = passo_path_item(path, index);
 
@@ -39,6 +46,8 @@ uint64_t passo_path_flat(
 	    || passo_path_shape(path) != PASSO_SHAPE_LINEAR)
 		return 0;
 	if (passo_path_item(path, line)->substeps / 2 < item->turn) /* the curve of a short line has it */
+		return 0;
+	if (valley && is_valley(item, square))
 		return 0;
 	/* what both sides leave, signed, is at least what the corner needs: a right angle has it */
 	const uint64_t needed =
@@ -106,18 +115,40 @@ static unsigned middle_parts(const struct passo_path_planner *path, uint32_t ind
 	return count;
 }
 
-unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index, uint64_t left,
-    uint64_t square, bool level, struct passo_path_part *parts)
+/* With the flat ends. */
+static unsigned all_parts(const struct passo_path_planner *path, uint32_t index, uint64_t left,
+    uint64_t before, uint64_t behind, uint64_t square, bool level, struct passo_path_part *parts)
 {
-	const uint64_t passed = ((uint64_t)passo_path_item(path, index)->substeps << 32) - left;
-	const uint64_t end = passo_path_end_square(path, index), slope = passo_path_item(path, index)->slope;
-	const uint64_t behind = passo_path_smaller(passo_path_flat(path, index + 1, index, end), left);
-	uint64_t before = passo_path_flat(path, index, index, square);
+	const uint64_t slope = passo_path_item(path, index)->slope;
 
-	before = passo_path_smaller(before > passed ? before - passed : 0, left - behind);
+	before = passo_path_smaller(before, left - behind);
 	unsigned count = put(parts, 0, PASSO_PATH_FLAT, before, square, slope);
 	if (left > before + behind)
 		count +=
 		    middle_parts(path, index, left - before - behind, behind, square, level, parts + count);
-	return put(parts, count, PASSO_PATH_FLAT, behind, count > 0 ? parts[count - 1].square : end, slope);
+	return put(parts, count, PASSO_PATH_FLAT, behind,
+	    count > 0 ? parts[count - 1].square : passo_path_end_square(path, index), slope);
+}
+
+unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index, uint64_t left,
+    uint64_t square, bool level, struct passo_path_part *parts)
+{
+	const uint64_t passed = ((uint64_t)passo_path_item(path, index)->substeps << 32) - left;
+	const uint64_t end = passo_path_end_square(path, index);
+	const uint64_t corner = passed > 0 ? passo_path_passing(path, square) : square;
+	const uint64_t begun = passo_path_flat(path, index, index, corner, true);
+	const uint64_t before = begun > passed ? begun - passed : 0;
+	uint64_t behind = passo_path_flat(path, index + 1, index, end, true);
+	const unsigned count =
+	    all_parts(path, index, left, before, passo_path_smaller(behind, left), square, level, parts);
+#ifndef PASSO_WITHOUT_ROUNDING
+	/* no valley: it comes up to the corner */
+	if (behind == 0 && parts[count - 1].kind == PASSO_PATH_UP) {
+		behind = passo_path_flat(path, index + 1, index, end, false);
+		if (behind > 0)
+			return all_parts(path, index, left, before, passo_path_smaller(behind, left), square,
+			    level, parts);
+	}
+#endif
+	return count;
 }

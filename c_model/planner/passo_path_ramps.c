@@ -31,9 +31,13 @@ static void advance(struct passo_path_planner *path, uint64_t distance)
 static void make(struct passo_path_planner *path, struct passo_ramp *ramp)
 {
 	const uint64_t distance = passo_path_distance(path, path->velocity, ramp);
+	const uint32_t planned = path->planned;
+	const uint64_t slowest = passo_path_smaller(path->velocity, ramp->velocity_end);
 
 	path->velocity = ramp->velocity_end;
 	advance(path, distance);
+	if (path->planned != planned)
+		passo_path_pass(path, slowest);
 }
 
 /* The path rests at the end of the item. */
@@ -66,24 +70,23 @@ static void land(struct passo_path_planner *path, const struct passo_path_aim *a
 }
 
 static void follow(
-    struct passo_path_planner *path, const struct passo_path_aim *aim, uint32_t most, struct passo_ramp *ramp)
+    struct passo_path_planner *path, struct passo_path_aim *aim, uint32_t most, struct passo_ramp *ramp)
 {
-	const uint64_t begin = path->velocity, end = passo_path_velocity_of(aim->square);
+	const uint64_t begin = path->velocity, from = passo_path_square_of(begin);
+	const uint64_t fall = passo_path_smaller(passo_path_gain(aim->slope, aim->length), from);
+
+	aim->square = passo_path_larger(aim->square, from - fall); /* where it cannot come down in time */
+	const uint64_t end = passo_path_velocity_of(aim->square);
 	const uint64_t ticks = passo_path_larger(passo_path_ticks_to(path, aim), 1);
 	const bool shaped = passo_path_is_shaped(path, aim);
-	uint32_t used = (uint32_t)passo_path_smaller(ticks, shaped ? PASSO_PATH_SHAPED_TICKS_MAX : most);
+	const uint32_t used =
+	    (uint32_t)passo_path_smaller(ticks, shaped ? PASSO_PATH_SHAPED_TICKS_MAX : most);
 	const uint64_t limit = passo_path_change(path, aim->slope, used);
 	uint64_t change = begin < end ? end - begin : begin - end;
 
 	if (used < ticks)
 		change = passo_mul_div(change, used, ticks);
-	if (change > limit) {
-		change = limit;
-		if (begin > end) /* faster than it was to be: in less time */
-			used = (uint32_t)passo_path_smaller(
-			    used, passo_path_larger(
-				      passo_path_ticks_over(path, aim->length, 2 * begin - change), 1));
-	}
+	change = passo_path_smaller(change, limit);
 	ramp->shape = shaped ? passo_path_shape(path) : PASSO_SHAPE_LINEAR;
 	passo_path_set_ticks(ramp, used);
 	ramp->velocity_end = begin < end ? begin + change : begin - change;

@@ -74,6 +74,7 @@ struct passo_path_item {
 	uint32_t turn;   /* substeps on either side over which a lone corner at its start may be rounded */
 	uint16_t lost;   /* UQ1.15: what its axis has of its acceleration before and behind it, in all */
 	uint16_t needed; /* UQ1.15: what the rounding needs of that axis at the square `bend` */
+	bool valley;     /* it has that where the path comes down to the corner and speeds up behind it */
 #endif
 #ifndef PASSO_LINEAR_PATHS
 	uint8_t eased; /* in a curve: quarters of the slope that are for the way across */
@@ -134,6 +135,9 @@ struct passo_path_planner {
 	/* where the ramps end */
 	int64_t offset;    /* Q31.32 substeps into item `planned` */
 	uint64_t velocity; /* UQ0.48 substeps per clock */
+#ifndef PASSO_WITHOUT_ROUNDING
+	uint64_t passing; /* the square at which they pass the start of item `planned` */
+#endif
 	bool at_rest;
 	bool started;    /* the dwell before the item is over */
 	bool jump, last; /* a ramp to 0 in no time is due; it ends the motion */

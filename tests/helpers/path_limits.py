@@ -9,6 +9,7 @@ from passo.path import PathSettings
 from passo.path_rounding import Line
 
 UNLIMITED = 1e30
+NEARLY = 1 - 1e-9
 
 
 @dataclass(frozen=True)
@@ -47,26 +48,28 @@ def limits_of(lines: Sequence[Line], settings: PathSettings, arcs: bool = True) 
         along = np.minimum(along, float(settings.acceleration) or UNLIMITED)
         ends = (np.where(unit == 0, UNLIMITED, jump) / np.maximum(np.abs(unit), 1e-12)).min(axis=1) ** 2
     corner = np.full(len(length), UNLIMITED)
-    arc = np.zeros(len(length), bool)
+    bends_before, bends_behind = np.ones(len(length), bool), np.ones(len(length), bool)
     for i in range(1, len(length)):
         change = np.abs(unit[i] - unit[i - 1])
         cosine = np.linalg.norm(change) / 2
-        mean = (length[i] + length[i - 1]) / 2
         if cosine < 1e-9:
-            arc[i] = True
             continue
         sine = max(0.0, 1 - cosine**2) ** 0.5
         rounded = float(settings.junction_deviation) * 2 * sine * (1 + sine) / cosine
-        arc[i] = mean < rounded
+        before, behind = (min(size / 2, rounded) for size in length[i - 1 : i + 1])
+        before, behind = min(before, (rounded + behind) / 2), min(behind, (rounded + before) / 2)
+        over = min(before + behind, rounded)
+        bends_before[i] = before + behind < rounded and before > NEARLY * length[i - 1] / 2
+        bends_behind[i] = before + behind < rounded and behind > NEARLY * length[i] / 2
         moved = change > 1e-9
-        corner[i] = (acceleration[moved] / change[moved]).min() * min(mean, rounded)
-        radius = min(mean, rounded) / (2 * cosine)
-        corner[i] = min(corner[i], (jerk[moved].min() * radius**2) ** (2 / 3))
+        corner[i] = (acceleration[moved] / change[moved]).min() * over
+        corner[i] = min(corner[i], (jerk[moved].min() * (over / (2 * cosine)) ** 2) ** (2 / 3))
         jumps = moved & (jump > 0)
         if jumps.any():
             corner[i] = min(corner[i], (jump[jumps] / change[jumps]).min() ** 2)
+    arc = bends_behind[1:-1] & bends_before[2:] if arcs else False
+    curve = np.maximum(corner[1:-1], corner[2:])  # whatever the feeds beside it
     corner[1:] = np.minimum(corner[1:], np.minimum(top[1:], top[:-1]))
-    for i in range(1, len(length) - 1):
-        if arcs and arc[i] and arc[i + 1]:
-            top[i] = min(top[i], max(corner[i], corner[i + 1]))
+    top[1:-1] = np.where(arc, np.minimum(top[1:-1], curve), top[1:-1])
+    corner[1:] = np.minimum(corner[1:], np.minimum(top[1:], top[:-1]))
     return Limits(length, unit, top, along, soft, corner, min(ends[0], top[0]), min(ends[-1], top[-1]))
