@@ -11,7 +11,7 @@ always @(posedge clk) begin
   if (bus_write || bus_read) registers_address_stands : assume (f_started && $stable(bus_address) && $stable(select));
 end
 
-// --- The causes, in the order in which they are told
+// --- The causes, in the order in which they are reported
 wire f_watchdog = watchdog_stop & moving;
 always @* begin
   hard_for_a_reason : assert (hard_stop == (limit_hard || alarm_hard || trigger_hard));

@@ -13,7 +13,7 @@ end
 // --- What the host has written to RUN, and what it reads
 wire [7:0] f_run = {{(8 - CHANNELS) {1'b0}}, run};
 wire [7:0] f_wait_sync = {{(8 - CHANNELS) {1'b0}}, wait_sync};
-wire [7:0] f_others = 8'hFF << CHANNELS;  // channels that are not there
+wire [7:0] f_others = 8'hFF << CHANNELS;  // channels that are not present
 wire       f_bad = (bus_data[7:0] & f_others) != 8'd0 || (bus_data[15:8] & f_others) != 8'd0
                    || bus_data[18:16] >= CHANNELS;
 reg  [8:0] f_line_room;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// In place of the SPI slave, for the proof of the top: what comes in goes on to the core and comes back.
+// In place of the SPI slave, for the proof of the top: what comes in continues to the core and comes back.
 `default_nettype none
 
 module passo_spi (

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// In place of the host interface, for the proofs of the bus fronts: it answers when it likes, and what comes in goes
-// on to the core and comes back.
+// In place of the host interface, for the proofs of the bus fronts: it answers when it likes, and what comes in continues
+// to the core and comes back.
 `default_nettype none
 
 module passo_words (
