@@ -2,6 +2,7 @@
 """`$100`, `$110` and `$120` against the pulses: steps, speed and acceleration, by a judge of the pins."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -72,8 +73,8 @@ def test_on_the_console(trial: list[tuple[float, float, float]]) -> None:
 
 
 def test_on_the_firmware() -> None:
-    elf = grbl_elf(paths.build / "tests" / "firmware_grbl", f"CORE_HZ={BOARD_HZ}", "AXES=3")
-    with model_engine(parameters_for(3), BOARD_HZ) as engine:
+    elf = grbl_elf(paths.build / "tests" / "firmware_grbl", "AXES=3")
+    with model_engine(replace(parameters_for(3), clock_hz=BOARD_HZ), BOARD_HZ) as engine:
         board = GrblBoard(engine, elf)
 
         def line(text: str) -> None:

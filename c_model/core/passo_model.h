@@ -345,7 +345,7 @@ struct passo_inputs_unit {
 	bool probe_inverted;
 };
 
-/* What the inputs of all channels share; see rtl/passo_machine.v. */
+/* Shared by the inputs of all channels; see rtl/passo_machine.v. */
 struct passo_machine_unit {
 	uint16_t filter, count;
 	bool tick;

@@ -57,12 +57,12 @@ def play_on_model(made: Path, histories: list[History]) -> Logs:
 def board_elf() -> Path:
     """The firmware that plays histories."""
     folder = paths.build / "tests" / "grbl_histories"
-    return grbl_elf(folder, f"CORE_HZ={BOARD_HZ}", "AXES=3", f"BAUD={BAUD}")
+    return grbl_elf(folder, "AXES=3", f"BAUD={BAUD}")
 
 
 def play_on_board(elf: Path, history: History) -> list[str]:
     """The log of a history on the firmware; its machine has no inputs, and its flash does not wear."""
-    with model_engine(Parameters(axes=4), BOARD_HZ) as engine:
+    with model_engine(Parameters(axes=4, clock_hz=BOARD_HZ), BOARD_HZ) as engine:
         board = GrblBoard(engine, elf, baud=BAUD)
         return _Board(board).play(history)
 

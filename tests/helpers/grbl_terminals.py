@@ -10,9 +10,8 @@ from typing import Any
 
 from passo.engine import model_engine
 from passo.grbl import Grbl, pseudo_terminal, serve
-from passo.grbl_setup import machine_at
+from passo.grbl_setup import core_for, machine_at
 from passo.machine_file import MachineFile
-from passo.run import parameters_for
 from passo.toolchain import paths
 from passo_stm32.grbl_board import GrblBoard, grbl_elf
 
@@ -31,14 +30,14 @@ def console_at(link: Path, machine: MachineFile) -> Iterator[Grbl]:
 @contextlib.contextmanager
 def board_at(link: Path, machine: MachineFile) -> Iterator[None]:
     """The firmware in the emulated STM32F103, as fast as that is."""
-    elf = grbl_elf(paths.build / "tests" / "firmware_grbl", f"CORE_HZ={machine.clock_hz}", "AXES=3")
+    elf = grbl_elf(paths.build / "tests" / "firmware_grbl", "AXES=3")
     with pseudo_terminal(link) as ours, _thread(lambda over: _serve_board(elf, machine, ours, over)):
         yield
 
 
 def _serve_board(elf: Path, machine: MachineFile, terminal: int, until: Callable[[], bool]) -> None:
     os.set_blocking(terminal, False)
-    with model_engine(parameters_for(3), machine.clock_hz) as engine:
+    with model_engine(core_for(machine), machine.clock_hz) as engine:
         board, told = GrblBoard(engine, elf), 0
         while not until():
             with contextlib.suppress(BlockingIOError, OSError):

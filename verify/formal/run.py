@@ -90,6 +90,7 @@ class Proof:
     depth: int  # clocks of the induction
     promises: tuple[Promise, ...]
     slow: bool = False
+    faults: int = faults.CELLS  # of which the solver chooses
     top: str = ""  # default: the module of its name
     defines: tuple[str, ...] = ()
     parameters: tuple[tuple[str, int], ...] = ()  # of the top
@@ -236,7 +237,7 @@ def fail(proof: Proof) -> Result:
     script = [
         *proof.commands,
         "setundef -undriven -anyseq",
-        *faults.draw(),
+        *faults.draw(proof.faults),
         f"delete -port {proof.module}/{faults.SELECT}",
         "setundef -undriven -anyconst",
         PROBLEM,
