@@ -5,15 +5,13 @@ import contextlib
 import os
 import threading
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from passo.engine import model_engine
 from passo.grbl import Grbl, pseudo_terminal, serve
-from passo.grbl_setup import machine_at
+from passo.grbl_setup import core_for, machine_at
 from passo.machine_file import MachineFile
-from passo.run import parameters_for
 from passo.toolchain import paths
 from passo_stm32.grbl_board import GrblBoard, grbl_elf
 
@@ -39,7 +37,7 @@ def board_at(link: Path, machine: MachineFile) -> Iterator[None]:
 
 def _serve_board(elf: Path, machine: MachineFile, terminal: int, until: Callable[[], bool]) -> None:
     os.set_blocking(terminal, False)
-    with model_engine(replace(parameters_for(3), clock_hz=machine.clock_hz), machine.clock_hz) as engine:
+    with model_engine(core_for(machine), machine.clock_hz) as engine:
         board, told = GrblBoard(engine, elf), 0
         while not until():
             with contextlib.suppress(BlockingIOError, OSError):
