@@ -4,7 +4,7 @@
     python -m benchmarks.path_adversary [PATHS [SEED [--keep]]]
 
 With --keep the smallest cases go to benchmarks/path_worst.json; tests/test_path_search.py has all of it.
-Batches that are done are kept in build/path_search, by what they depend on: a run that was ended goes on.
+Batches that are done are kept in build/path_search, by what they depend on: a run that was ended continues.
 """
 
 import hashlib
