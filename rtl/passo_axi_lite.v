@@ -9,19 +9,21 @@
 `default_nettype none
 
 module passo_axi_lite #(
-  parameter integer                     CHANNELS        = 1,  // 1 .. 8
-  parameter integer                     AXES            = 4,  // per channel, 1 .. 8
-  parameter integer                     TICK_LOG2       = 7,  // clocks per tick, 7 .. 16
-  parameter integer                     LINE_QUEUE_LOG2 = 8,  // log2 of the places for lines, 2 .. 8
-  parameter integer                     RAMP_QUEUE_LOG2 = 4,  // log2 of the places for ramps, 2 .. 8
-  parameter integer                     STEPS_REGISTER  = 0,  // 1: block RAMs have an output register
-  parameter integer                     INPUTS          = 0,  // 1: limits, home, alarm, probe, e-stop
-  parameter integer                     ENCODERS        = 0,  // 1: encoders
-  parameter integer                     OUTPUTS         = 0,  // 1: outputs bound to the path
+  parameter integer CHANNELS = 1,  // 1 .. 8
+  parameter integer AXES = 4,  // per channel, 1 .. 8
+  parameter integer TICK_LOG2 = 7,  // clocks per tick, 7 .. 16
+  parameter integer LINE_QUEUE_LOG2 = 8,  // log2 of the places for lines, 2 .. 8
+  parameter integer RAMP_QUEUE_LOG2 = 4,  // log2 of the places for ramps, 2 .. 8
+  parameter integer STEPS_REGISTER = 0,  // 1: block RAMs have an output register
+  parameter integer INPUTS = 0,  // 1: limits, home, alarm, probe, e-stop
+  parameter integer ENCODERS = 0,  // 1: encoders
+  parameter integer OUTPUTS = 0,  // 1: outputs bound to the path
+  parameter [31:0] CLOCK_HZ = 0,  // of clk, for the host to read; 0: not told
+  parameter [31:0] BUILD = 0,  // identifies the bitstream, for the host to read
   // pin levels from configuration until the host writes polarities; bit channel * AXES + axis
-  parameter         [CHANNELS*AXES-1:0] STEP_RESET      = 0,
-  parameter         [CHANNELS*AXES-1:0] DIR_RESET       = 0,
-  parameter         [CHANNELS*AXES-1:0] ENABLE_RESET    = 0
+  parameter [CHANNELS*AXES-1:0] STEP_RESET = 0,
+  parameter [CHANNELS*AXES-1:0] DIR_RESET = 0,
+  parameter [CHANNELS*AXES-1:0] ENABLE_RESET = 0
 ) (
   input  wire                     clk,
   input  wire                     rst,
@@ -134,6 +136,8 @@ module passo_axi_lite #(
     .INPUTS         (INPUTS),
     .ENCODERS       (ENCODERS),
     .OUTPUTS        (OUTPUTS),
+    .CLOCK_HZ       (CLOCK_HZ),
+    .BUILD          (BUILD),
     .STEP_RESET     (STEP_RESET),
     .DIR_RESET      (DIR_RESET),
     .ENABLE_RESET   (ENABLE_RESET)

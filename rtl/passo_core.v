@@ -12,19 +12,21 @@
 `default_nettype none
 
 module passo_core #(
-  parameter integer                     CHANNELS        = 1,  // 1 .. 8
-  parameter integer                     AXES            = 4,  // per channel, 1 .. 8
-  parameter integer                     TICK_LOG2       = 7,  // clocks per tick, 7 .. 16
-  parameter integer                     LINE_QUEUE_LOG2 = 8,  // log2 of the places for lines, 2 .. 8
-  parameter integer                     RAMP_QUEUE_LOG2 = 4,  // log2 of the places for ramps, 2 .. 8
-  parameter integer                     STEPS_REGISTER  = 0,  // 1: block RAMs have an output register
-  parameter integer                     INPUTS          = 0,  // 1: limits, home, alarm, probe, e-stop
-  parameter integer                     ENCODERS        = 0,  // 1: encoders
-  parameter integer                     OUTPUTS         = 0,  // 1: outputs bound to the path
+  parameter integer CHANNELS = 1,  // 1 .. 8
+  parameter integer AXES = 4,  // per channel, 1 .. 8
+  parameter integer TICK_LOG2 = 7,  // clocks per tick, 7 .. 16
+  parameter integer LINE_QUEUE_LOG2 = 8,  // log2 of the places for lines, 2 .. 8
+  parameter integer RAMP_QUEUE_LOG2 = 4,  // log2 of the places for ramps, 2 .. 8
+  parameter integer STEPS_REGISTER = 0,  // 1: block RAMs have an output register
+  parameter integer INPUTS = 0,  // 1: limits, home, alarm, probe, e-stop
+  parameter integer ENCODERS = 0,  // 1: encoders
+  parameter integer OUTPUTS = 0,  // 1: outputs bound to the path
+  parameter [31:0] CLOCK_HZ = 0,  // of clk, for the host to read; 0: not told
+  parameter [31:0] BUILD = 0,  // identifies the bitstream, for the host to read
   // pin levels from configuration until the host writes polarities; bit channel * AXES + axis
-  parameter         [CHANNELS*AXES-1:0] STEP_RESET      = 0,
-  parameter         [CHANNELS*AXES-1:0] DIR_RESET       = 0,
-  parameter         [CHANNELS*AXES-1:0] ENABLE_RESET    = 0
+  parameter [CHANNELS*AXES-1:0] STEP_RESET = 0,
+  parameter [CHANNELS*AXES-1:0] DIR_RESET = 0,
+  parameter [CHANNELS*AXES-1:0] ENABLE_RESET = 0
 ) (
   input  wire                     clk,
   input  wire                     rst,
@@ -240,7 +242,9 @@ module passo_core #(
     .RAMP_QUEUE_LOG2(RAMP_QUEUE_LOG2),
     .INPUTS         (INPUTS),
     .ENCODERS       (ENCODERS),
-    .OUTPUTS        (OUTPUTS)
+    .OUTPUTS        (OUTPUTS),
+    .CLOCK_HZ       (CLOCK_HZ),
+    .BUILD          (BUILD)
   ) u_registers (
     .clk          (clk),
     .rst          (rst),

@@ -14,6 +14,8 @@ function [12:0] core_rule(input [7:0] address);
     | {13{address == ADDRESS_RUN[7:0]}}            & (RULE_READ | RULE_WRITE | 13'd18)
     | {13{address == ADDRESS_REFUSALS_0[7:0]}}     & (RULE_READ)
     | {13{address == ADDRESS_REFUSALS_1[7:0]}}     & (RULE_READ)
+    | {13{address == ADDRESS_CLOCK[7:0]}}          & (RULE_READ)
+    | {13{address == ADDRESS_BUILD[7:0]}}          & (RULE_READ)
     | {13{address == ADDRESS_INPUT_FILTER[7:0]}}   & (WITH_INPUTS & (RULE_WRITE | 13'd15))
     | {13{address == ADDRESS_WATCHDOG[7:0]}}       & (WITH_INPUTS & (RULE_WRITE | 13'd19))
     | {13{address == ADDRESS_ESTOP[7:0]}}          & (WITH_INPUTS & RULE_READ)

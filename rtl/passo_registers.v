@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Registers of the core: identification, parameters, RUN; and the status word. The refusal counters have their
-// addresses here, but the link keeps them.
+// Registers of the core: what it is, RUN, and the status word. The refusal counters have their addresses here, but the
+// link keeps them.
 //
 // Promise: `read_data` is the addressed register one clock after `bus_read`, for one clock, and 0 if it is none of
 // these; it is the status word at all other times. RUN changes for all channels on the same clock. `bad_value`: a
@@ -10,14 +10,16 @@
 `default_nettype none
 
 module passo_registers #(
-  parameter CHANNELS        = 1,
-  parameter AXES            = 4,
-  parameter TICK_LOG2       = 7,
-  parameter LINE_QUEUE_LOG2 = 8,
-  parameter RAMP_QUEUE_LOG2 = 4,
-  parameter INPUTS          = 0,
-  parameter ENCODERS        = 0,
-  parameter OUTPUTS         = 0
+  parameter        CHANNELS        = 1,
+  parameter        AXES            = 4,
+  parameter        TICK_LOG2       = 7,
+  parameter        LINE_QUEUE_LOG2 = 8,
+  parameter        RAMP_QUEUE_LOG2 = 4,
+  parameter        INPUTS          = 0,
+  parameter        ENCODERS        = 0,
+  parameter        OUTPUTS         = 0,
+  parameter [31:0] CLOCK_HZ        = 0,
+  parameter [31:0] BUILD           = 0
 ) (
   input  wire                                    clk,
   input  wire                                    rst,
@@ -81,14 +83,16 @@ module passo_registers #(
   wire [2:0] number = bus_address[2:0];
 
   // Decoded one clock ahead of the strobe: the address is stable by then.
-  reg       known;
+  reg       known;  // one of the first eight
   reg       is_run;
   reg [3:0] reads;  // registers 0 .. 3
+  reg       reads_clock;
+  reg       reads_build;
   reg       reads_status;
 
   integer i;
 
-  assign is_counters = known && number[2];
+  assign is_counters = known && number[2:1] == ADDRESS_REFUSALS_0[2:1];
   assign bad_value   = is_run & run_beyond;
 
   assign read_data =
@@ -96,13 +100,17 @@ module passo_registers #(
       | (reads[0] ? IDENTIFICATION_RESET : 32'd0)
       | (reads[1] ? {8'd0, VERSION_MAJOR_RESET, VERSION_MINOR_RESET, VERSION_PATCH_RESET} : 32'd0)
       | (reads[2] ? PARAMETERS : 32'd0)
-      | (reads[3] ? {13'd0, status_channel, wait_sync_padded, run_padded} : 32'd0);
+      | (reads[3] ? {13'd0, status_channel, wait_sync_padded, run_padded} : 32'd0)
+      | (reads_clock ? CLOCK_HZ : 32'd0)
+      | (reads_build ? BUILD : 32'd0);
 
   always @(posedge clk) begin
-    known        <= bus_address[11:3] == 9'd0 && bus_address[2:0] <= ADDRESS_REFUSALS_1[2:0];
+    known        <= bus_address[11:3] == 9'd0;
     is_run       <= bus_address == ADDRESS_RUN;
     reads_status <= ~bus_read;
     for (i = 0; i < 4; i = i + 1) reads[i] <= bus_read && known && number == i[2:0];
+    reads_clock <= bus_read && known && number == ADDRESS_CLOCK[2:0];
+    reads_build <= bus_read && known && number == ADDRESS_BUILD[2:0];
     if (bus_write && is_run) begin
       run            <= bus_data[CHANNELS-1:0];
       wait_sync      <= bus_data[8+:CHANNELS];

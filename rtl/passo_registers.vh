@@ -96,7 +96,7 @@ localparam VERSION_PATCH_BITS  = 8;
 localparam VERSION_PATCH_RESET = 8'h00;
 localparam VERSION_MINOR_LSB   = 8;
 localparam VERSION_MINOR_BITS  = 8;
-localparam VERSION_MINOR_RESET = 8'h03;
+localparam VERSION_MINOR_RESET = 8'h04;
 localparam VERSION_MAJOR_LSB   = 16;
 localparam VERSION_MAJOR_BITS  = 8;
 localparam VERSION_MAJOR_RESET = 8'h00;
@@ -163,6 +163,16 @@ localparam REFUSALS_1_BUSY_RESET       = 8'h00;
 localparam REFUSALS_1_BAD_VALUE_LSB    = 24;
 localparam REFUSALS_1_BAD_VALUE_BITS   = 8;
 localparam REFUSALS_1_BAD_VALUE_RESET  = 8'h00;
+
+// Core: Clock. What the core runs at, as the top of the board tells it.
+localparam ADDRESS_CLOCK = 12'h006;
+localparam CLOCK_HZ_LSB  = 0;
+localparam CLOCK_HZ_BITS = 32;
+
+// Core: Build. Which bitstream it is.
+localparam ADDRESS_BUILD = 12'h007;
+localparam BUILD_LSB     = 0;
+localparam BUILD_BITS    = 32;
 
 // Core: Input filter. Glitch filter of all inputs but e-stop. After a write they are unknown.
 localparam ADDRESS_INPUT_FILTER      = 12'h010;

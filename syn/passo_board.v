@@ -13,7 +13,8 @@
 
 module passo_board #(
   parameter            AXES             = 4,
-  parameter            CLOCK_HZ         = 100_000_000,
+  parameter [    31:0] CLOCK_HZ         = 100_000_000,   // of the PLL; the core tells it to the host
+  parameter [    31:0] BUILD            = 0,             // of this bitstream; the core tells it to the host
   parameter            RUNNING_INVERTED = 0,
   parameter            IRQ_INVERTED     = 0,
   parameter            LED_INVERTED     = 0,
@@ -113,6 +114,8 @@ module passo_board #(
     .INPUTS        (INPUTS),
     .ENCODERS      (ENCODERS),
     .OUTPUTS       (OUTPUTS),
+    .CLOCK_HZ      (CLOCK_HZ),
+    .BUILD         (BUILD),
     .STEP_RESET    (STEP_RESET),
     .DIR_RESET     (DIR_RESET),
     .ENABLE_RESET  (ENABLE_RESET)

@@ -123,6 +123,17 @@ def test_core_gets_the_parameters_of_its_device(board: Board) -> None:
 
 
 @each_board
+def test_bitstream_says_what_it_is(board: Board, tmp_path: Path) -> None:
+    """The top hands the clock of the PLL and the build to the core; another pin is another build."""
+    for name in ("CLOCK_HZ", "BUILD"):
+        assert re.search(rf"\.{name}\s*\({name}\)", TOP.read_text())
+    made = [generate(board, tmp_path, axes)[0].parameters for axes in (1, 2, 1)]
+    assert all(parameters["CLOCK_HZ"] == board.parameters()["CLOCK_HZ"] for parameters in made)
+    builds = [parameters["BUILD"] for parameters in made]
+    assert builds[0] == builds[2] != builds[1] and all(0 < int(build) < 1 << 32 for build in builds)
+
+
+@each_board
 def test_pll_makes_the_clock(board: Board) -> None:
     """By the formula in the data sheet of each family, with the VCO within its limits."""
     found = re.findall(r"\.([A-Z_]+)\((\d+)\)", pll_file(board))
@@ -290,6 +301,8 @@ def test_boards_are_listed_and_unknown_ones_refused(capsys: pytest.CaptureFixtur
     assert all(board.name in listed and board.title in listed for board in BOARDS)
     assert synth.main(["--board", "nowhere"]) == 2
     assert "unknown board 'nowhere'; must be one of" in capsys.readouterr().err
+    assert synth.main(["--board", "icebraker"]) == 2
+    assert "unknown board 'icebraker'; did you mean icebreaker?" in capsys.readouterr().err
     assert synth.main(["--board", BOARDS[0].name, "--clock", "5000"]) == 2
     assert "cannot generate 5000 MHz" in capsys.readouterr().err
     for axes in (0, 7):

@@ -47,10 +47,12 @@ class Bench:
         inputs: int = 0,
         switches: Sequence[Switch] = (),
         shafts: Sequence[Shaft] = (),
+        tells: bool = False,  # the core its clock
         **parts: int,  # encoders, outputs
     ):
         self.said: list[str] = []
-        parameters = Parameters(channels=channels, axes=axes, inputs=inputs, **parts)
+        told = clock_hz if tells else 0
+        parameters = Parameters(channels=channels, axes=axes, inputs=inputs, clock_hz=told, **parts)
         self.engine = model_engine(parameters, clock_hz)
         self.machine = Machine(self.engine, switches)  # only with inputs
         self.terminal = Terminal(
@@ -796,6 +798,18 @@ def test_another_clock(bench: Bench) -> None:
     assert bench.ask("config clock_hz=4000000").startswith("error: MOVING: ")
     bench.ask("wait")
     assert lasted(bench) == pytest.approx([0.05 * 2_000_000], abs=64)
+
+
+def test_core_tells_its_clock() -> None:
+    """Times are those of the core; a clock that it does not have is refused, and its own stays."""
+    bench = Bench(tells=True)
+    assert bench.ask(f"config clock_hz={CLOCK_HZ}") == "ok"
+    refused = f"error: CLOCK: the core runs at {CLOCK_HZ} Hz, not 2000000 Hz"
+    assert bench.ask("config clock_hz=2_000_000") == refused
+    assert bench.ask(IN_TIME).startswith("error: NOT_OPEN")
+    assert bench.ask("open") == "ok"
+    assert bench.tell("version")["clock_hz"] == f"{CLOCK_HZ}"
+    assert bench.tell("config axis=0")["step_high"] == "4clocks"
 
 
 def test_versions(bench: Bench) -> None:

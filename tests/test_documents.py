@@ -7,12 +7,14 @@ from pathlib import Path
 
 import pytest
 from passo.build import Parameters
+from passo.drives import drives
 from passo.engine import model_engine
 from passo.frame import crc
 from passo.link import GAP, error_name
 from passo.moves import PIN_CLOCKS_MAX
 from passo.native import planner
 from passo.toolchain import paths
+from passo.values import parse_time
 
 sys.path.insert(0, str(paths.tools))
 import count_words
@@ -80,6 +82,10 @@ def test_settings_of_drives() -> None:
     text = (paths.docs / "wiring.md").read_text()
     rows = re.findall(r"^\| ([^|]+) \| (\d+) \| (\d+) \| (\d+) \| (\d+) \|", text, re.M)
     assert len(rows) >= 7
+    named = {word: times for name, *times in rows for word in re.findall(r"[\w-]+", name)}
+    for drive in drives().values():
+        times = (parse_time(key, time, 10**9) * 10**9 for key, time in drive.pins.items())
+        assert named[drive.name] == [f"{time}" for time in times], drive.name
     for name, *times in rows:
         assert all(0 < int(time) * 100_000_000 // 10**9 <= PIN_CLOCKS_MAX for time in times), name
     settings = set(re.findall(r"`(\w+)`", text)) - {"PINS_TOO_SLOW", "dedge", "step_high"}

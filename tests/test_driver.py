@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The driver (stm32_bridge/driver/passo.h) on the C model: every call, and its errors."""
 
+from dataclasses import replace
+
 import pytest
 from passo import frame
 from passo import registers as r
@@ -717,6 +719,31 @@ def test_another_core(wire: Wire, address: int, word: int, name: str) -> None:
     with pytest.raises(DriverError, match=name):
         Driver(wire, parameters=PARAMETERS)
     assert all(request[0] >> 28 == r.Operation.READ for request in wire.requests)
+
+
+@pytest.mark.parametrize(
+    ("told", "expected", "outcome"),
+    [
+        (0, CLOCK_HZ, CLOCK_HZ),  # a core that does not tell it
+        (CLOCK_HZ, CLOCK_HZ, CLOCK_HZ),
+        (48_000_000, 0, 48_000_000),
+        (48_000_000, CLOCK_HZ, f"CLOCK: the core runs at 48000000 Hz, not {CLOCK_HZ} Hz"),
+        (0, 0, "CLOCK_UNKNOWN: the core does not tell its clock"),
+    ],
+)
+def test_clock_is_that_of_the_core(told: int, expected: int, outcome: int | str) -> None:
+    """What is expected must match; nothing is written before that."""
+    wire = Wire(replace(PARAMETERS, clock_hz=told), told or CLOCK_HZ)
+    driver = open_driver(wire)
+    driver.options.clock_hz = expected
+    wire.requests.clear()
+    if isinstance(outcome, str):
+        with pytest.raises(DriverError, match=outcome):
+            driver.open()
+        assert all(request[0] >> 28 == r.Operation.READ for request in wire.requests)
+    else:
+        driver.open()
+        assert driver.c.machine.clock_hz == outcome
 
 
 def test_a_patch_does_not_matter(wire: Wire) -> None:

@@ -6,6 +6,7 @@ PASSO_SEED is the seed of the random cases.
 
 import random
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -105,6 +106,25 @@ def test_core_and_processor_do_not_drift(clock_hz: int) -> None:
             assert (
                 0 <= passed - engine.clock <= 300 * clock_hz // HZ
             )  # the core catches up every 256 instructions
+
+
+@pytest.mark.parametrize("clock_hz", [48_000_000, 150_000_000])
+def test_clock_is_that_of_the_core(clock_hz: int) -> None:
+    """Nothing has to be configured: the console says what it found, and a move takes its time."""
+    with model_engine(replace(PARAMETERS, clock_hz=clock_hz), clock_hz) as engine:
+        board = Board(engine)
+        assert f"note: the core runs at {clock_hz} Hz; pin timings are 1 us\n" in board.output
+        assert board.must("version").endswith(f" clock_hz={clock_hz}")
+        assert board.must("config axis=0").startswith(f"ok axis=0 step_high={clock_hz // 1_000_000}clocks")
+        sclk_hz = TICKS_PER_SECOND / 2 / board.spi.half_period
+        assert sclk_hz == (18e6 if clock_hz >= HZ else 9e6)
+        refused = board.ask("config clock_hz=72000000")
+        assert refused == f"error: CLOCK: the core runs at {clock_hz} Hz, not 72000000 Hz"
+        board.run(1)
+        board.must("move steps=1000 profile=linear total_time=0.1 ramp_time=0.01")
+        board.wait_motion(0.2)
+        (motion,) = motions(board.events())
+        assert motion.clocks / clock_hz == pytest.approx(0.1, rel=1e-4)
 
 
 # ------------------------------------------------------------------------------------------- bad inputs ----

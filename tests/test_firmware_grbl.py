@@ -8,20 +8,28 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import passo
 import pytest
+from passo import registers as r
 from passo.cli import main
+from passo.drives import drives
 from passo.engine import model_engine, rtl_engine
 from passo.grbl import Grbl
 from passo.grbl_setup import machine_at
 from passo.machine_file import read_machine
 from passo.run import parameters_for
 from passo.toolchain import paths
+from passo.values import parse_time
+from passo_fpga.boards import boards
 from passo_stm32.board import Motion, make_firmware, motions
+from passo_stm32.bus import TICKS_PER_SECOND
 from passo_stm32.flash import FIRST, PAGE
-from passo_stm32.grbl_board import GREETING, GrblBoard, grbl_elf
+from passo_stm32.grbl_board import GREETING, START, GrblBoard, grbl_elf
 from passo_stm32.machine import Machine
 
 HZ = 36_000_000  # of the core
+PARAMETERS = replace(parameters_for(3), clock_hz=HZ)
+REGISTER_MAP = r.VERSION_MAJOR_RESET, r.VERSION_MINOR_RESET, r.VERSION_PATCH_RESET
 FAST_BAUD = 1_000_000
 CODE = 62 << 10
 SETTINGS = FIRST + CODE
@@ -39,20 +47,20 @@ LONG = "G1 X40 F3000"
 @pytest.fixture(scope="module")
 def elf() -> Path:
     """The image for the core of these tests."""
-    return grbl_elf(paths.build / "tests" / "firmware_grbl", f"CORE_HZ={HZ}", "AXES=3")
+    return grbl_elf(paths.build / "tests" / "firmware_grbl", "AXES=3")
 
 
 @pytest.fixture(scope="module")
 def fast_elf() -> Path:
     """For a fast serial line and a core with inputs: the machine has homes."""
-    definitions = f"CORE_HZ={HZ}", "AXES=3", f"BAUD={FAST_BAUD}", "HOMES=7"
+    definitions = "AXES=3", f"BAUD={FAST_BAUD}", "HOMES=7"
     return grbl_elf(paths.build / "tests" / "firmware_grbl_fast", *definitions)
 
 
 @pytest.fixture
 def board(elf: Path) -> Iterator[GrblBoard]:
     """A board with the C model, which is fast while nothing happens."""
-    with model_engine(parameters_for(3), HZ) as engine:
+    with model_engine(PARAMETERS, HZ) as engine:
         made = GrblBoard(engine, elf)
         yield made
         assert not made.faults and {cause for _, cause in made.resets} == {"power"}
@@ -76,12 +84,96 @@ def test_it_fits_and_the_page_says_how_large_it_is() -> None:
 def test_greeting_and_settings(board: GrblBoard) -> None:
     """What a sender asks for first."""
     assert board.output == "\r\n[MSG:Reset by power]\r\n\r\nGrbl 1.1h ['$' for help]\r\n"
-    assert board.line("$I") == "[VER:1.1h.passo:]\n[OPT:VNM,48,255]\nok"
+    core = f"[CORE:{'.'.join(map(str, REGISTER_MAP))}:{HZ}:0]"
+    firmware = f"[VER:1.1h.passo:]\n[OPT:VNM,48,255]\n[FIRMWARE:Passo {passo.__version__}]"
+    assert board.line("$I") == f"{firmware}\n{core}\nok"
     settings = board.line("$$").splitlines()
     assert settings[-1] == "ok"
     assert {"$0=2.000", "$11=0.010", "$100=80.000", "$102=400.000", "$110=12000.000"} < set(settings)
     assert "$103=400.000" not in settings
     assert board.line("G5") == "error:20" and board.line("G1 X1") == "error:22"
+
+
+@pytest.mark.parametrize("clock_hz", [48_000_000, 72_000_000, 150_000_000])
+def test_clock_is_that_of_the_core(elf: Path, clock_hz: int) -> None:
+    """One image for any board: `$I` tells clock and build, SCLK follows, a move takes its time."""
+    with model_engine(replace(PARAMETERS, clock_hz=clock_hz, build=0xDEADBEEF), clock_hz) as engine:
+        board = GrblBoard(engine, elf)
+        assert f":{clock_hz}:{0xDEADBEEF}]" in board.line("$I")
+        sclk_hz = TICKS_PER_SECOND / 2 / board.spi.half_period
+        assert sclk_hz == (18e6 if clock_hz >= 72_000_000 else 9e6)
+        assert board.line("G1 X2 F6000") == "ok"
+        board.rest(1)
+        (motion,) = motions(board.events(), axes=4)
+        clocks, _ = motion.steps(0)
+        assert motion.clocks / clock_hz == pytest.approx(2 / 100 + 100 / 1000, rel=0.3)
+        assert len(clocks) == 160 and not board.faults
+
+
+@pytest.mark.parametrize("clock_hz", sorted({round(board.clock_mhz * 1e6) for board in boards().values()}))
+def test_defaults_suit_the_core_of_every_board(fast_elf: Path, clock_hz: int) -> None:
+    """Also the filter of the switches, which a core of 108 MHz cannot count to a millisecond."""
+    parameters = replace(PARAMETERS, inputs=1, clock_hz=clock_hz)
+    with model_engine(parameters, clock_hz) as engine:
+        board = GrblBoard(engine, fast_elf, baud=FAST_BAUD)
+        assert "error" not in board.output
+        assert board.line("$20=0").endswith("ok") and "$26=0.400" in board.line("$$").splitlines()
+
+
+def test_core_that_does_not_tell_its_clock(elf: Path) -> None:
+    """The firmware says so, and nothing moves."""
+    with model_engine(replace(PARAMETERS, clock_hz=0), HZ) as engine:
+        board = Machine(elf, engine)
+        board.run(START)
+        board.type("G1 X2 F6000\n$H\n")
+        board.run(0.5)
+        assert board.output.endswith("[MSG:CLOCK_UNKNOWN]\r\n") and not board.events()["step"].any()
+
+
+def shortest_times(events: np.ndarray, axis: int, clock_hz: int) -> dict[str, float]:
+    """Shortest times at the pins of an axis, in us: STEP high and low, DIR before STEP rises and after."""
+    clock = events["clock"].astype(float) / clock_hz * 1e6
+    step, dir_ = (events[pin] >> axis & 1 for pin in ("step", "dir"))
+
+    def edges(levels: np.ndarray, level: int) -> np.ndarray:
+        changed = np.flatnonzero(np.diff(levels.astype(int)) == 2 * level - 1) + 1
+        return clock[changed]
+
+    rises, falls = edges(step, 1), edges(step, 0)
+    turns = np.sort(np.concatenate([edges(dir_, 0), edges(dir_, 1)]))
+    after = [(turn - rises[rises < turn][-1]) for turn in turns if (rises < turn).any()]
+    before = [(rises[rises >= turn][0] - turn) for turn in turns if (rises >= turn).any()]
+    assert len(rises) == len(falls) > 100 and len(before) > 5
+    return {
+        "high": (falls - rises).min(),
+        "low": (rises[1:] - falls[:-1]).min(),
+        "setup": min(before),
+        "hold": min(after),
+    }
+
+
+@pytest.mark.parametrize("name", ["DM542", "TB6600", "A4988", "servo-24V"])
+def test_pins_are_as_the_drive_needs(elf: Path, name: str) -> None:
+    """By the settings that `$` lines would have, at every reversal of a zigzag."""
+    clock_hz = 81_000_000
+    microseconds = {key: float(parse_time(key, time, 1)) * 1e6 for key, time in drives()[name].pins.items()}
+    pulse = max(microseconds["step_high"], microseconds["step_low"])
+    turn = max(microseconds["dir_setup"], microseconds["dir_hold"])
+    with model_engine(replace(PARAMETERS, clock_hz=clock_hz), clock_hz) as engine:
+        board = GrblBoard(engine, elf)
+        for line in (f"$0={pulse:g}", f"$29={turn:g}", f"$4={drives()[name].enable_inverted:d}"):
+            assert board.line(line) == "ok"
+        board.events()
+        board.stream([f"G1 X{i % 2 * 0.2:g} Y{i * 0.1:g} F6000" for i in range(20)], 5)
+        board.rest(5)
+        events = board.events()
+        shortest = shortest_times(events, 0, clock_hz)
+        clock = 1e6 / clock_hz
+        assert pulse - 1e-6 <= shortest["high"] < pulse + clock
+        assert shortest["low"] >= pulse - 1e-6 and shortest["setup"] >= turn - 1e-6
+        assert shortest["hold"] >= turn - 1e-6 and not board.faults
+        enabled = int(events["enable"][-1]) & 1
+        assert enabled != drives()[name].enable_inverted
 
 
 def test_settings_outlast_a_reset(board: GrblBoard) -> None:
@@ -124,7 +216,7 @@ def steps_made(board: GrblBoard) -> int:
 
 def on_the_pc(lines: list[str]) -> list[Motion]:
     """The motions of the PC's controller."""
-    with model_engine(parameters_for(3), HZ) as engine:
+    with model_engine(PARAMETERS, HZ) as engine:
         grbl = Grbl(engine, MACHINE, lambda said: None)
         events = [engine.drain()]
         drain = engine.drain
@@ -144,7 +236,7 @@ def on_the_pc(lines: list[str]) -> list[Motion]:
 def test_pulses_are_those_of_the_pc(elf: Path) -> None:
     """A square and an arc on the Verilated core: every edge."""
     expected = on_the_pc(["$0=1", *PART])
-    with rtl_engine(parameters_for(3), HZ) as engine:
+    with rtl_engine(PARAMETERS, HZ) as engine:
         board = GrblBoard(engine, elf)
         assert board.line("$0=1") == "ok"
         board.events()
@@ -229,7 +321,7 @@ def hurry_along(board: GrblBoard, count: int, after: str = "") -> float:
 
 def test_path_that_the_host_cannot_keep_up_with(fast_elf: Path) -> None:
     """It slows down, and ends."""
-    with model_engine(replace(parameters_for(3), inputs=1), HZ) as engine:
+    with model_engine(replace(PARAMETERS, inputs=1), HZ) as engine:
         board = GrblBoard(engine, fast_elf, baud=FAST_BAUD)
         assert board.line("$X").endswith("ok")
         assert hurry_along(board, 300) > 2000
@@ -276,7 +368,7 @@ def test_link_is_lost_in_mid_path(board: GrblBoard) -> None:
 
 def test_estop_at_the_start(fast_elf: Path) -> None:
     """It is reported, and the greeting follows when it is over. A machine with homes is locked."""
-    with model_engine(replace(parameters_for(3), inputs=1), HZ) as engine:
+    with model_engine(replace(PARAMETERS, inputs=1), HZ) as engine:
         engine.set("estop_n", 0)
         machine = Machine(fast_elf, engine, baud=FAST_BAUD)
         machine.run(0.1)

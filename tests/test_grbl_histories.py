@@ -10,7 +10,7 @@ from passo_stm32.grbl_board import grbl_elf
 
 from tests.helpers.grbl_histories import made_of, shrink
 from tests.helpers.grbl_judge import FindingError, judge
-from tests.helpers.grbl_play import BAUD, BOARD_HZ, findings, play_on_board, play_on_model, program
+from tests.helpers.grbl_play import BAUD, findings, play_on_board, play_on_model, program
 
 HISTORIES, ON_BOARD = 25, 2
 IDLE = "<Idle|MPos:0.000,0.000,0.000|FS:0,0>"
@@ -27,7 +27,7 @@ def test_on_the_model(tmp_path: Path) -> None:
 
 
 def test_on_the_firmware() -> None:
-    elf = grbl_elf(paths.build / "tests" / "grbl_histories", f"CORE_HZ={BOARD_HZ}", "AXES=3", f"BAUD={BAUD}")
+    elf = grbl_elf(paths.build / "tests" / "grbl_histories", "AXES=3", f"BAUD={BAUD}")
     first = 1000 * random_cases.seed()
     for seed in range(first, first + ON_BOARD):
         assert not findings(lambda history: play_on_board(elf, history), made_of(seed)), seed

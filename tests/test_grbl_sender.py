@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 from passo.engine import model_engine
 from passo.grbl import Grbl, pseudo_terminal, serve
+from passo.grbl_setup import core_for
 from passo.machine_file import MachineFile, read_machine
 from passo.part import play_part, read_part
 from passo.run import open_engine, parameters_for
@@ -67,7 +68,7 @@ def test_a_job(connected: tuple[Sender, Grbl], tmp_path: Path, incremental: bool
 def serve_board(elf: Path, terminal: int, until: Callable[[], bool]) -> None:
     """Connect the serial line of a board to a terminal."""
     os.set_blocking(terminal, False)
-    with model_engine(parameters_for(3), BOARD.clock_hz) as engine:
+    with model_engine(core_for(BOARD), BOARD.clock_hz) as engine:
         board, told = GrblBoard(engine, elf), 0
         while not until():
             with contextlib.suppress(BlockingIOError, OSError):
@@ -80,7 +81,7 @@ def serve_board(elf: Path, terminal: int, until: Callable[[], bool]) -> None:
 @pytest.fixture
 def firmware(tmp_path: Path) -> Iterator[Sender]:
     """The sender, with the firmware behind its pseudo-terminal, booted."""
-    elf = grbl_elf(paths.build / "tests" / "firmware_grbl", f"CORE_HZ={BOARD.clock_hz}", "AXES=3")
+    elf = grbl_elf(paths.build / "tests" / "firmware_grbl", "AXES=3")
     link, over = tmp_path / "board", threading.Event()
     with pseudo_terminal(link) as ours:
         thread = threading.Thread(target=serve_board, args=(elf, ours, over.is_set))

@@ -58,10 +58,22 @@ def test_values_and_their_errors(session: Session) -> None:
         ("$3=1.5", "error:2"), ("$3=64", "error:3"), ("$0=0", "error:6"), ("$0=0.000001", "error:6"),
         ("$12=0", "error:3"), ("$110=9999999", "error:12"), ("$1000=1", "error:3"), ("$N2=G21", "error:3"),
         ("$N0=G21X", "error:2"), ("$N0=" + "G4P0" * 30, "error:14"), ("$RST=x", "error:3"),
-        ("$0=1000.1", "error:3"),
+        ("$0=1000.1", "error:3"), ("$29=-1", "error:4"), ("$29=1001", "error:3"), ("$28=1", "error:3"),
+        # X makes 16,000 steps/s: 62.5 us from one to the next; and turns at corners of 9 mm/s
+        ("$0=31.26", "error:12"), ("$29=1000", "error:12"),
     ):  # fmt: skip
         assert (text, session.line(text)) == (text, said)
     assert session.line("$$") == before
+
+
+def test_pins_have_the_times_of_the_settings(session: Session) -> None:
+    """`$0` is that of STEP, active and inactive, `$29` that of DIR: up to what the axes allow."""
+    assert session.line("$0=31.25") == "ok" and session.line("$29=5") == "ok"
+    settings = session.line("$$").splitlines()
+    assert {"$0=31.250", "$29=5.000"} < set(settings)
+    assert session.line("$110=12001") == "error:12" and session.line("$100=80.1") == "error:12"
+    assert session.line("$110=6000") == "ok" and session.line("$0=60") == "error:12"  # Y
+    assert session.line("$111=6000") == "ok" and session.line("$0=60") == "ok"
 
 
 def test_a_setting_changes_the_machine(session: Session) -> None:

@@ -42,12 +42,13 @@ ENDS = {
     "OUTPUTS": (0, 1),
 }
 LEVELS = ("STEP_RESET", "DIR_RESET", "ENABLE_RESET")  # a bit for each axis, default 0
+TOLD = ("CLOCK_HZ", "BUILD")  # a word, default 0
 AXES = 4  # the default
 
 
 def _high(axes: int) -> Parameters:
-    """Parameters with all bits of the levels set."""
-    return dict.fromkeys(LEVELS, f"{axes}'h{(1 << axes) - 1:x}")
+    """Parameters with all bits of the levels and words set."""
+    return dict.fromkeys(LEVELS, f"{axes}'h{(1 << axes) - 1:x}") | dict.fromkeys(TOLD, "32'hffffffff")
 
 
 LOWEST: Parameters = {name: low for name, (low, _) in ENDS.items()}

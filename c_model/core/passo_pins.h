@@ -17,6 +17,8 @@ struct passo_parameters {
 	uint8_t inputs; /* INPUTS, 0 or 1: limits, home, alarm, probe, e-stop */
 	uint8_t encoders; /* ENCODERS, 0 or 1 */
 	uint8_t outputs; /* OUTPUTS, 0 or 1: outputs bound to the path */
+	uint32_t clock_hz; /* CLOCK_HZ, what the host reads as the clock, in Hz; 0: not told */
+	uint32_t build; /* BUILD, what the host reads as the identifier of the bitstream */
 	/* initial pin levels, bit channel * AXES + axis */
 	uint64_t step_reset;
 	uint64_t dir_reset;
@@ -100,7 +102,9 @@ enum passo_input {
     X(ramp_queue_log2, RAMP_QUEUE_LOG2) \
     X(inputs, INPUTS) \
     X(encoders, ENCODERS) \
-    X(outputs, OUTPUTS)
+    X(outputs, OUTPUTS) \
+    X(clock_hz, CLOCK_HZ) \
+    X(build, BUILD)
 
 #define PASSO_LEVELS(X) \
     X(step_reset, STEP_RESET) \

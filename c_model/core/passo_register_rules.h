@@ -42,6 +42,10 @@ static inline struct passo_rule passo_core_rule(unsigned address)
 		return (struct passo_rule){.read = true};
 	case PASSO_ADDRESS_REFUSALS_1:
 		return (struct passo_rule){.read = true};
+	case PASSO_ADDRESS_CLOCK:
+		return (struct passo_rule){.read = true};
+	case PASSO_ADDRESS_BUILD:
+		return (struct passo_rule){.read = true};
 	case PASSO_ADDRESS_INPUT_FILTER:
 		return (struct passo_rule){.write = true, .part = PASSO_PART_INPUTS, .defined = 0x0000FFFFu, .maximum = 0x0000FFFFu};
 	case PASSO_ADDRESS_WATCHDOG:

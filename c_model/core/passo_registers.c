@@ -90,6 +90,10 @@ uint32_t passo_registers_value(const struct passo_core *core, uint16_t address)
 		return four_counters(&registers->refusals[0]);
 	case PASSO_ADDRESS_REFUSALS_1:
 		return four_counters(&registers->refusals[4]);
+	case PASSO_ADDRESS_CLOCK:
+		return core->parameters.clock_hz;
+	case PASSO_ADDRESS_BUILD:
+		return core->parameters.build;
 	case PASSO_ADDRESS_ESTOP:
 		return (uint32_t)core->machine.estop_seen >> 1;
 	default:

@@ -97,7 +97,7 @@
 #define PASSO_VERSION_PATCH_RESET 0x00u
 #define PASSO_VERSION_MINOR_LSB   8u
 #define PASSO_VERSION_MINOR_BITS  8u
-#define PASSO_VERSION_MINOR_RESET 0x03u
+#define PASSO_VERSION_MINOR_RESET 0x04u
 #define PASSO_VERSION_MAJOR_LSB   16u
 #define PASSO_VERSION_MAJOR_BITS  8u
 #define PASSO_VERSION_MAJOR_RESET 0x00u
@@ -164,6 +164,16 @@
 #define PASSO_REFUSALS_1_BAD_VALUE_LSB    24u
 #define PASSO_REFUSALS_1_BAD_VALUE_BITS   8u
 #define PASSO_REFUSALS_1_BAD_VALUE_RESET  0x00u
+
+/* Core: Clock. What the core runs at, as the top of the board tells it. */
+#define PASSO_ADDRESS_CLOCK 0x006u
+#define PASSO_CLOCK_HZ_LSB  0u
+#define PASSO_CLOCK_HZ_BITS 32u
+
+/* Core: Build. Which bitstream it is. */
+#define PASSO_ADDRESS_BUILD 0x007u
+#define PASSO_BUILD_LSB     0u
+#define PASSO_BUILD_BITS    32u
 
 /* Core: Input filter. Glitch filter of all inputs but e-stop. After a write they are unknown. */
 #define PASSO_ADDRESS_INPUT_FILTER      0x010u

@@ -27,7 +27,7 @@ from passo.cocotb.clocks import PERIOD, Clocks, read
 from passo.cocotb.host import Host, plain_test, wait
 from passo.cocotb.pulses import PinTiming
 from passo.cocotb.thread import Thread
-from passo.host import Channel, parameters_of
+from passo.host import Channel, read_parameters
 from passo.judge import COLUMNS, Judge
 from passo.link import Link
 from passo.plan import Plan
@@ -96,8 +96,7 @@ class Core(Host):
     def identify(self) -> None:
         """Read the parameters of the core and start the comparison."""
         self.link = Link(self)
-        (word,) = self.link.read(r.ADDRESS_PARAMETERS, 1)
-        self.parameters = parameters_of(word)
+        self.parameters = read_parameters(self.link)
         self.axes, self.tick = self.parameters.axes, 1 << self.parameters.tick_log2
         if self._record.judge is None:
             self._record.judge = Judge(self.parameters)

@@ -17,7 +17,7 @@ from migen import ClockSignal, Constant, Instance, ResetSignal, Signal
 from migen.genlib.io import CRG
 
 AXES = 3
-CLOCK_HZ = 50e6
+CLOCK_HZ = 100e6
 BASE = 0x3000_0000
 INPUTS = {"limit_low": AXES, "limit_high": AXES, "estop_n": 1}
 OUTPUTS = {"step": AXES, "dir": AXES, "enable": AXES}
@@ -51,6 +51,7 @@ class Passo(LiteXModule):
             "passo_wishbone",
             p_AXES=AXES,
             p_INPUTS=1,
+            p_CLOCK_HZ=int(CLOCK_HZ),
             p_ENABLE_RESET=Constant(0b111, AXES),  # drives with an active-low enable: off at first
             i_clk=ClockSignal(),
             i_rst=ResetSignal(),

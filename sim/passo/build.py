@@ -30,6 +30,9 @@ VERILATOR_FLAGS = (
 )
 WAVES_FLAGS = ("--trace-fst", "--no-trace-params")  # without the constants of the registers, in every module
 MAKEFILE, MODEL, RUNTIME = f"V{TOP}.mk", f"V{TOP}__ALL.a", "libverilated.a"
+LEVELS = ("step_reset", "dir_reset", "enable_reset")  # parameters with a bit for each pin
+TOLD = ("clock_hz", "build")  # and those with a word
+WORD_BITS = 32
 
 
 @dataclass(frozen=True)
@@ -43,13 +46,14 @@ class Parameters(CoreParameters):
         levels = (self.step_reset, self.dir_reset, self.enable_reset)
         reset = "_reset{:x}_{:x}_{:x}".format(*levels) if any(levels) else ""
         parts = "".join(f"_{part}" for part in ("inputs", "encoders", "outputs") if getattr(self, part))
-        return f"{self.channels}x{self.axes}_{self.tick_log2}_{queues}{parts}{reset}"
+        told = f"_{self.clock_hz}Hz_{self.build:x}" if self.clock_hz or self.build else ""
+        return f"{self.channels}x{self.axes}_{self.tick_log2}_{queues}{parts}{reset}{told}"
 
     def verilog(self) -> dict[str, str]:
         """Verilog parameter names and values."""
-        pins = self.channels * self.axes
+        sized = dict.fromkeys(LEVELS, self.channels * self.axes) | dict.fromkeys(TOLD, WORD_BITS)
         return {
-            name.upper(): f"{pins}'h{value:x}" if name.endswith("_reset") else str(value)
+            name.upper(): f"{sized[name]}'h{value:x}" if name in sized else str(value)
             for name, value in asdict(self).items()
         }
 

@@ -84,6 +84,10 @@ def _parser() -> argparse.ArgumentParser:
     source.add_argument("--csv", type=Path, metavar="FILE", help="read a curve (u,s) or a table (k,point)")
     shape.add_argument("--out", type=Path, metavar="FILE", help="write the table: FILE.csv or FILE.toml")
     shape.add_argument("--plot", type=Path, metavar="FILE.png", help="draw it")
+    made = commands.add_parser("make", help="from a machine file: settings, wiring, commands")
+    made.set_defaults(command=_make)
+    made.add_argument("machine", type=Path, metavar="MACHINE.toml", help="machine file (docs/gcode.md)")
+    made.add_argument("--out", type=Path, metavar="DIR", help="output folder (default build/machines/NAME)")
     console_options.add(commands).set_defaults(command=_console)
     firmware = commands.add_parser(
         "firmware",
@@ -150,6 +154,13 @@ def _shape(options: argparse.Namespace) -> int:
     steepest = max(b - a for a, b in pairwise((*points, shape.ONE))) * shape.POINTS / shape.ONE
     symmetric = "symmetric" if facts.symmetric else "not symmetric"
     print(f"mean {float(facts.mean):.6f}, {symmetric}, slope at most {steepest:.3f}")
+    return OK
+
+
+def _make(options: argparse.Namespace) -> int:
+    from passo.make_command import make_machine
+
+    make_machine(options.machine, options.out)
     return OK
 
 

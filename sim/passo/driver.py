@@ -15,9 +15,9 @@ from passo.registers import Cause, State
 class DriverError(LinkError):
     """A call of the driver failed; `name` is the name of the error, such as "CORE_RESET"."""
 
-    def __init__(self, call: str, error: int):
+    def __init__(self, call: str, error: int, text: str = ""):
         super().__init__("", error)
-        self.args = (f"{call}: {self.name}: {error_text(error)}",)
+        self.args = (f"{call}: {self.name}: {text or error_text(error)}",)
 
 
 class Source:
@@ -84,7 +84,11 @@ class Driver:
 
     def open(self) -> None:
         """Open the channel, or reopen it."""
-        self._check("open", self.lib.passo_open(self.c, self.host, self.hardware.c, self.options))
+        error = self.lib.passo_open(self.c, self.host, self.hardware.c, self.options)
+        if error == self.lib.PASSO_ERROR_CLOCK:
+            told = f"the core runs at {self.c.machine.clock_hz} Hz, not {self.options.clock_hz} Hz"
+            raise DriverError("open", error, told)
+        self._check("open", error)
 
     def call(self, name: str, *arguments: Any) -> None:
         """Call passo_NAME(); raises DriverError if it fails."""

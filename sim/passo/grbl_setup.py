@@ -12,10 +12,12 @@ from typing import Any
 from passo.build import Parameters
 from passo.engine import NUMBERS
 from passo.failure import BadInputError
-from passo.machine_file import MachineFile
+from passo.machine_file import MachineFile, check_pins
+from passo.moves import PinTiming
 from passo.native import ffi, planner
 from passo.output import write_bytes
 from passo.run import open_engine, parameters_for
+from passo.values import BadValueError
 
 MILLION = 1_000_000
 SECONDS_PER_MINUTE = 60
@@ -45,11 +47,22 @@ def _millionths(
     return value
 
 
+def _seconds(clocks: int, clock_hz: int) -> float:
+    """In millionths of a microsecond, rounded down: the console rounds up to clocks again."""
+    return clocks * MILLION**2 // clock_hz / MILLION**2
+
+
 def default_settings(machine: MachineFile) -> Any:
     """The `struct passo_grbl_settings` of a machine file."""
     c = planner()
     made = ffi().new("struct passo_grbl_settings *")
-    ends, switches = machine.ends, machine.switches
+    ends, switches, pins = machine.ends, machine.switches, machine.pins
+    pulse, turn = max(pins.step_high, pins.step_low), max(pins.dir_setup, pins.dir_hold)
+    try:
+        limits = machine.settings.axes, machine.settings.junction_deviation
+        check_pins(*limits, PinTiming(pulse, pulse, turn, turn), machine.clock_hz)
+    except BadValueError as error:
+        raise BadInputError(f"{machine.path}: as $0 and $29: {error}") from None
     values = {
         "IDLE_DELAY": ALWAYS_ON,
         "REPORT": REPORT_ALL,
@@ -59,12 +72,14 @@ def default_settings(machine: MachineFile) -> Any:
         "HOMING": any(end.home for end in ends),
         "HOMES_LOW": sum(1 << axis for axis, end in enumerate(ends) if end.home == "low"),
         "LASER": machine.laser,
+        "ENABLES_INVERTED": machine.enable_inverted,
     }
     for name, value in values.items():
         made.value[getattr(c, f"PASSO_GRBL_{name}")] = round(value * MILLION)
     filter_most = FILTER_CLOCKS / machine.clock_hz
     for name, key, given, factor, most in (
-        ("PULSE", "pins: step_high", machine.pins.step_high / machine.clock_hz, MILLION, INFINITE),
+        ("PULSE", "pins: step_high", _seconds(pulse, machine.clock_hz), MILLION, INFINITE),
+        ("TURN", "pins: dir_setup", _seconds(turn, machine.clock_hz), MILLION, INFINITE),
         ("DEVIATION", "junction_deviation", machine.settings.junction_deviation, 1, INFINITE),
         ("ARC_TOLERANCE", "arc_tolerance", machine.gcode.arc_tolerance, 1, INFINITE),
         ("HOME_FEED", "home: speed", switches.speed, SECONDS_PER_MINUTE, INFINITE),
@@ -103,8 +118,6 @@ def setup_of(machine: MachineFile, parameters: Parameters, defaults: Any, pages:
     made = ffi().new("struct passo_grbl_setup *")
     made.path = machine.settings.struct(parameters)[0]
     made.defaults = defaults
-    made.pins.step_low_ns, made.pins.dir_setup_ns = machine.pins.step_low, machine.pins.dir_setup
-    made.pins.dir_hold_ns = machine.pins.dir_hold
     for axis, end in enumerate(machine.ends):
         made.limits_low |= ("limit_low" in end.switches) << axis
         made.limits_high |= ("limit_high" in end.switches) << axis
@@ -118,7 +131,8 @@ def core_for(machine: MachineFile) -> Parameters:
     """The core that a machine needs."""
     core = parameters_for(len(machine.settings.axes))
     outputs = machine.gcode.spindle_maximum > 0
-    return replace(core, inputs=int(machine.has_inputs), outputs=int(outputs))
+    parts = {"inputs": int(machine.has_inputs), "outputs": int(outputs)}
+    return replace(core, clock_hz=machine.clock_hz, **parts)
 
 
 def attach(engine: Any, machine: MachineFile) -> None:

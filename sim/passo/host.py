@@ -26,9 +26,14 @@ def load_table(link: Link, bank: int, points: Sequence[int]) -> None:
         link.write(address + k, *points[k : k + frame.PAYLOAD_MAX])
 
 
-def parameters_of(word: int) -> Parameters:
-    """What a core says of itself: its register PARAMETERS."""
-    return Parameters(**{name: int(value) for name, value in asdict(r.ParametersWord.unpack(word)).items()})
+def read_parameters(link: Link) -> Parameters:
+    """What a core says of itself. Raises HostError if it is none of Passo's, LinkError."""
+    identification, _, word = link.read(r.ADDRESS_IDENTIFICATION, 3)
+    if identification != r.IDENTIFICATION_RESET:
+        raise HostError(f"no Passo core: it identifies itself as 0x{identification:08X}")
+    clock_hz, build = link.read(r.ADDRESS_CLOCK, 2)
+    built = {name: int(value) for name, value in asdict(r.ParametersWord.unpack(word)).items()}
+    return Parameters(**built, clock_hz=clock_hz, build=build)
 
 
 @dataclass(frozen=True)
@@ -49,10 +54,7 @@ class Channel:
     def __init__(self, link: Link, parameters: Parameters, number: int = 0):
         self.link, self.parameters, self.number = link, parameters, number
         self.base = r.ADDRESS_CHANNEL_BASE + number * r.ADDRESS_CHANNEL_STRIDE
-        identification, _, word = link.read(r.ADDRESS_IDENTIFICATION, 3)
-        if identification != r.IDENTIFICATION_RESET:
-            raise HostError(f"no Passo core: it identifies itself as 0x{identification:08X}")
-        actual = parameters_of(word)
+        actual = read_parameters(link)
         if actual != parameters:
             raise HostError(f"the core has {actual}; expected {parameters}")
 

@@ -3,11 +3,13 @@
 
 import math
 import tomllib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
 from pathlib import Path
 
+from passo.drives import drives
 from passo.failure import BadInputError
 from passo.gcode import AXIS_LETTERS, GcodeSettings
 from passo.move_file import read_pins
@@ -25,13 +27,15 @@ from passo.table_values import (
     read_word,
     within,
 )
+from passo.toolchain import need_repository
 from passo.values import BadValueError, Written, shown
 
 FILE_KEYS = (
-    *("clock_hz", "junction_deviation", "arc_tolerance", "profile", "spindle_maximum", "laser"),
-    *("soft_limits", "probe", "pins", "switches", "home", "axis"),
+    *("board", "clock_hz", "junction_deviation", "arc_tolerance", "profile", "spindle_maximum", "laser"),
+    *("soft_limits", "probe", "drive", "pins", "switches", "home", "axis"),
 )
 AXIS_KEYS = ("name", "steps_per_mm", "speed", "acceleration", "jerk", "jump", "travel", "home", "switches")
+ENABLE_INVERTED = "enable_inverted"
 SWITCH_KEYS = ("inverted", "debounce", "stop")
 HOME_KEYS = ("seek", "speed", "pull_off")
 HOME_ENDS = ("low", "high")
@@ -83,6 +87,8 @@ class MachineFile:
     ends: tuple[AxisEnds, ...]
     switches: Switches
     laser: bool = False
+    enable_inverted: bool = False
+    board: str = ""  # a folder of syn/, or none
 
     @property
     def has_inputs(self) -> bool:
@@ -111,8 +117,8 @@ def read_machine(path: Path) -> MachineFile:
 
 def _machine(path: Path, data: Table) -> MachineFile:
     check_known(data, FILE_KEYS)
-    clock_hz = read_clock_hz(data)
-    pins = read_subtable(data, "pins")
+    board, clock_hz = _board(data)
+    pins, enable_inverted = _pins(data)
     tables = read_tables(data, "axis")
     if not 1 <= len(tables) <= len(AXIS_LETTERS):
         raise BadValueError(f"there are {len(tables)} axes; must be 1 to {len(AXIS_LETTERS)}: [[axis]]")
@@ -124,11 +130,9 @@ def _machine(path: Path, data: Table) -> MachineFile:
     for number, axis in enumerate(axes, 1):
         if profile == "jerk" and not axis.jerk:
             raise BadValueError(f'axis {number}: profile = "jerk" needs its jerk in mm/s^3')
-    timing = within("pins", lambda: read_pins(pins, clock_hz))
+    timing = within("pins", lambda: read_pins(pins, clock_hz, (ENABLE_INVERTED,)))
     deviation = _number(data, "junction_deviation", JUNCTION_DEVIATION)
-    for number, axis in enumerate(axes, 1):
-        within(f"axis {number}", lambda axis=axis: _check_speed(axis, timing, clock_hz))
-        within(f"axis {number}", lambda axis=axis: _check_reversal(axis, deviation, timing, clock_hz))
+    check_pins(axes, deviation, timing, clock_hz)
     ends = tuple(
         within(f"axis {number}", lambda table=table: _ends(table)) for number, table in enumerate(tables, 1)
     )
@@ -152,7 +156,40 @@ def _machine(path: Path, data: Table) -> MachineFile:
         ends,
         switches,
         _flag(data, "laser", False),
+        enable_inverted,
+        board,
     )
+
+
+def _board(data: Table) -> tuple[str, int]:
+    """The board, if there is one, and its clock; without a board, the clock that the file says."""
+    if "board" not in data:
+        return "", read_clock_hz(data)
+    from passo_fpga import boards
+
+    need_repository("a board")
+    name = read_word(data, "board", tuple(boards.names()))
+    clock_hz = boards.board(name).parameters()["CLOCK_HZ"]
+    if "clock_hz" in data and read_clock_hz(data) != clock_hz:
+        raise BadValueError(f"clock_hz is {data['clock_hz']}, but the board {name} runs at {clock_hz} Hz")
+    return name, clock_hz
+
+
+def _pins(data: Table) -> tuple[Table, bool]:
+    """The table [pins] with what the drive needs where it says nothing itself, and the polarity of EN."""
+    own = read_subtable(data, "pins")
+    if "drive" not in data:
+        return own, within("pins", lambda: _flag(own, ENABLE_INVERTED, False))
+    drive = drives()[read_word(data, "drive", tuple(drives()))]
+    inverted = within("pins", lambda: _flag(own, ENABLE_INVERTED, drive.enable_inverted))
+    return {**drive.pins, **own}, inverted
+
+
+def check_pins(axes: Sequence[PathAxis], deviation: float, pins: PinTiming, clock_hz: int) -> None:
+    """Raises BadValueError for an axis that is too fast for the pins, with its highest speed."""
+    for number, axis in enumerate(axes, 1):
+        within(f"axis {number}", lambda axis=axis: _check_speed(axis, pins, clock_hz))
+        within(f"axis {number}", lambda axis=axis: _check_reversal(axis, deviation, pins, clock_hz))
 
 
 def _check_speed(axis: PathAxis, pins: PinTiming, clock_hz: int) -> None:

@@ -24,6 +24,10 @@ class CoreParameters:
     encoders: int = 0
     # OUTPUTS, 0 or 1: outputs bound to the path
     outputs: int = 0
+    # CLOCK_HZ, what the host reads as the clock, in Hz; 0: not told
+    clock_hz: int = 0
+    # BUILD, what the host reads as the identifier of the bitstream
+    build: int = 0
     # pin levels after configuration, bit channel * axes + axis; the host cannot read them
     step_reset: int = field(default=0, compare=False)
     dir_reset: int = field(default=0, compare=False)

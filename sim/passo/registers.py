@@ -160,7 +160,7 @@ class VersionWord(Word):
     """Version."""
 
     major: int = bits(16, 8, "r", 0)  # Major.
-    minor: int = bits(8, 8, "r", 3)  # Minor.
+    minor: int = bits(8, 8, "r", 4)  # Minor.
     patch: int = bits(0, 8, "r", 0)  # Patch.
 
 
@@ -503,7 +503,7 @@ VERSION_PATCH_BITS = 8
 VERSION_PATCH_RESET = 0x00
 VERSION_MINOR_LSB = 8
 VERSION_MINOR_BITS = 8
-VERSION_MINOR_RESET = 0x03
+VERSION_MINOR_RESET = 0x04
 VERSION_MAJOR_LSB = 16
 VERSION_MAJOR_BITS = 8
 VERSION_MAJOR_RESET = 0x00
@@ -570,6 +570,16 @@ REFUSALS_1_BUSY_RESET = 0x00
 REFUSALS_1_BAD_VALUE_LSB = 24
 REFUSALS_1_BAD_VALUE_BITS = 8
 REFUSALS_1_BAD_VALUE_RESET = 0x00
+
+# Core: Clock. What the core runs at, as the top of the board tells it.
+ADDRESS_CLOCK = 0x006
+CLOCK_HZ_LSB = 0
+CLOCK_HZ_BITS = 32
+
+# Core: Build. Which bitstream it is.
+ADDRESS_BUILD = 0x007
+BUILD_LSB = 0
+BUILD_BITS = 32
 
 # Core: Input filter. Glitch filter of all inputs but e-stop. After a write they are unknown.
 ADDRESS_INPUT_FILTER = 0x010
@@ -1130,6 +1140,8 @@ TABLE = (
     Register("RUN", "CORE", 0x003, 1, RunWord.places()),
     Register("REFUSALS_0", "CORE", 0x004, 1, Refusals0Word.places()),
     Register("REFUSALS_1", "CORE", 0x005, 1, Refusals1Word.places()),
+    Register("CLOCK", "CORE", 0x006, 1, (Field("HZ", 0, 32, "r", None),)),
+    Register("BUILD", "CORE", 0x007, 1, (Field("BUILD", 0, 32, "r", None),)),
     Register("INPUT_FILTER", "CORE", 0x010, 1, (Field("FILTER", 0, 16, "w", 0x0000),), "inputs"),
     Register("WATCHDOG", "CORE", 0x011, 1, WatchdogWord.places(), "inputs"),
     Register("ESTOP", "CORE", 0x012, 1, (Field("PRESSED", 0, 1, "r", 0x0),), "inputs"),

@@ -29,7 +29,7 @@ def header(source: Source) -> str:
         "#include <stdint.h>",
         "",
         "struct passo_parameters {",
-        *(f"\tuint8_t {parameter.name}; /* {parameter.text} */" for parameter in source.parameters),
+        *(f"\tuint{p.bits}_t {p.name}; /* {p.text} */" for p in source.parameters),
         "\t/* initial pin levels, bit channel * AXES + axis */",
         *(f"\tuint64_t {level};" for level in source.levels),
         "};",

@@ -18,6 +18,7 @@ class Parameter:
     name: str
     default: int
     text: str
+    bits: int = 8
 
 
 @dataclass(frozen=True)

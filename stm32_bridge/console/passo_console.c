@@ -23,7 +23,8 @@ void passo_console_start(struct passo_console *console, const struct passo_sink 
 	console->hardware = *hardware;
 	if (board)
 		console->board = *board;
-	console->clock_hz = clock_hz;
+	console->given_hz = clock_hz;
+	console->clock_hz = clock_hz != 0u ? clock_hz : PASSO_CLOCK_HZ_RESET;
 	console->baud = baud;
 	console->hold_microseconds = console->stop_microseconds = HOLD_MICROSECONDS;
 	console->filter_microseconds = FILTER_MICROSECONDS;

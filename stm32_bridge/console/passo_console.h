@@ -22,7 +22,7 @@
 /* Stands for a byte that was lost or received with an error; its line is rejected. */
 #define PASSO_CONSOLE_LOST '\0'
 
-/* Clock of the core until `config clock_hz=` sets another. */
+/* Clock that times are read with until a core tells its own, or `config clock_hz=` sets it. */
 #define PASSO_CLOCK_HZ_RESET 100000000u
 
 /* Functions of the board; unused ones are null. */
@@ -30,6 +30,7 @@ struct passo_console_board {
 	/* Called after the answer has been sent. */
 	void (*set_baud)(void *context, uint32_t baud);
 	void (*set_spi_fast)(void *context, bool fast);
+	uint32_t spi_fast_hz; /* clock of the core from which it can be fast */
 	/* Number of receive overruns of the serial line. */
 	uint32_t (*lost_bytes)(void *context);
 	void *context;
@@ -91,6 +92,7 @@ struct passo_console {
 	struct passo_host host;
 	struct passo_console_channel channel[PASSO_CHANNELS_MAX];
 	uint32_t clock_hz, hold_microseconds, stop_microseconds, baud;
+	uint32_t given_hz; /* the clock that the core must have; 0: what it tells */
 	uint32_t tried_at; /* microseconds: time of the last attempt to open the core */
 	uint32_t filter_microseconds, watchdog_microseconds, disable_microseconds; /* of the inputs */
 	bool spi_slow;
@@ -114,8 +116,8 @@ struct passo_console {
 	uint16_t bad; /* first non-printable byte, plus 1; 0: none */
 };
 
-/* Initializes the console, prints a greeting and tries to open the core. `board` may be null; `clock_hz` and
- * `baud` are the initial values. */
+/* Initializes the console, prints a greeting and tries to open the core. `board` may be null; `clock_hz` is
+ * the clock that the core must have, or 0, and `baud` the initial value. */
 void passo_console_start(struct passo_console *console, const struct passo_sink *sink,
     const struct passo_hardware *hardware, const struct passo_console_board *board, uint32_t clock_hz,
     uint32_t baud);

@@ -102,11 +102,33 @@ static bool is_open(enum passo_error error)
 	    || error == PASSO_ERROR_ALARM;
 }
 
+static void set_spi(const struct passo_console *console, bool fast)
+{
+	if (console->board.set_spi_fast)
+		console->board.set_spi_fast(console->board.context, fast);
+}
+
+/* The core is open: times are those of its clock. */
+static void take_clock(struct passo_console *console)
+{
+	const uint32_t clock_hz = passo_machine(&console->channel[0].passo)->clock_hz;
+
+	if (clock_hz != console->clock_hz) {
+		console->clock_hz = clock_hz;
+		passo_commands_reset_times(console);
+		passo_say(&console->sink, "note: the core runs at %u Hz; pin timings are 1 us\n", clock_hz);
+	}
+	set_spi(console, !console->spi_slow && clock_hz >= console->board.spi_fast_hz);
+}
+
 /* Opens a channel; the first one opens the core. */
 static enum passo_error open_channel(struct passo_console *console, uint8_t number)
 {
 	struct passo_console_channel *channel = &console->channel[number];
-	const struct passo_options options = {.clock_hz = console->clock_hz, .channel = number};
+	const struct passo_options options = {.clock_hz = console->given_hz, .channel = number};
+
+	if (number == 0u && !console->opened)
+		set_spi(console, false); /* any core can follow */
 	enum passo_error error = number == 0u
 	                           ? passo_open(&channel->passo, &console->host, &console->hardware, &options)
 	                           : passo_open_channel(&channel->passo, &console->host, &options);
@@ -116,6 +138,7 @@ static enum passo_error open_channel(struct passo_console *console, uint8_t numb
 	channel->unset = true;
 	channel->noted = PASSO_OK;
 	if (number == 0u && console->opened) {
+		take_clock(console);
 		const enum passo_error refused = passo_commands_set_core(console);
 
 		if (error == PASSO_OK)

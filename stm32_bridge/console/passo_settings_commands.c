@@ -69,14 +69,20 @@ static bool config_axis(const struct passo_call *call)
 	return true;
 }
 
-/* A new clock changes all times: the core is reopened with default settings. */
+/* A new clock changes all times: the core is reopened with default settings; one of another clock, soon after
+ * with its own. */
 static enum passo_error set_clock(struct passo_console *console, uint32_t clock_hz)
 {
+	enum passo_error error;
+
 	if (passo_commands_is_moving(console))
 		return PASSO_ERROR_MOVING;
-	console->clock_hz = clock_hz;
+	console->clock_hz = console->given_hz = clock_hz;
 	passo_commands_reset_times(console);
-	return passo_commands_open(console);
+	error = passo_commands_open(console);
+	if (error == PASSO_ERROR_CLOCK)
+		console->given_hz = 0;
+	return error;
 }
 
 /* Filter and watchdog of the core. */
@@ -134,6 +140,9 @@ static bool config_board(const struct passo_call *call)
 	}
 	if (error == PASSO_OK && has_inputs)
 		error = set_core(console, values);
+	if (error == PASSO_ERROR_CLOCK)
+		return passo_complain(&console->sink, "CLOCK: the core runs at %u Hz, not %u Hz",
+		    passo_machine(&console->channel[0].passo)->clock_hz, values->clock_hz);
 	if (!passo_answer(call, error))
 		return false;
 	console->hold_microseconds = values->hold_microseconds;
@@ -142,7 +151,7 @@ static bool config_board(const struct passo_call *call)
 	console->need_enable = values->need_enable;
 	if (has_spi) {
 		console->spi_slow = values->on;
-		board->set_spi_fast(board->context, !values->on);
+		board->set_spi_fast(board->context, !values->on && console->clock_hz >= board->spi_fast_hz);
 	}
 	if (has_baud) {
 		console->baud = values->baud;

@@ -4,7 +4,7 @@
  *     static struct passo_host host;
  *     static struct passo passo;
  *
- *     passo_open(&passo, &host, &hardware, &(struct passo_options){.clock_hz = 72000000});
+ *     passo_open(&passo, &host, &hardware, &(struct passo_options){0});
  *     passo_configure_axis(&passo, 0, &(struct passo_axis_config){.step_high_ns = 2000});
  *     passo_enable(&passo, 0, true);
  *     passo_move_by_speed(&passo, &move); // queued; the core executes it on its own
@@ -45,7 +45,7 @@ extern "C" {
 
 /* Properties of the core that the program expects. */
 struct passo_options {
-	uint32_t clock_hz; /* clock of the core; required, because it cannot be read from the core */
+	uint32_t clock_hz; /* clock of the core, must match; 0: what the core tells */
 	uint8_t channel;   /* the channel to control, 0 .. channels - 1 */
 	uint8_t channels;  /* CHANNELS of the core, must match; 0: any */
 	uint8_t axes;      /* AXES per channel, must match; 0: any */
@@ -237,7 +237,8 @@ struct passo {
  * immediately, moves only after the motion has ended or stopped and passo_clear(), which takes it over. Each
  * axis must be configured before it moves. A pending stop of a previous connection is dropped. ESTOP and
  * ALARM: these keep the channel stopped; it is open, and passo_clear() works when they are over. About ten
- * frames. Errors: NOT_PASSO, VERSION, PARAMETERS, WATCHDOG_TOO_LONG, MOVING, ESTOP, ALARM. */
+ * frames. Errors: NOT_PASSO, VERSION, PARAMETERS, CLOCK, CLOCK_UNKNOWN, WATCHDOG_TOO_LONG, MOVING,
+ * ESTOP, ALARM. */
 enum passo_error passo_open(struct passo *passo, struct passo_host *host,
     const struct passo_hardware *hardware, const struct passo_options *options);
 /* Takes over another channel of a core that is already open. Error: also STREAMING while the next frame of

@@ -26,10 +26,12 @@ enum passo_error {
 	PASSO_ERROR_BAD_CRC,    /* the core received only corrupt frames */
 
 	/* the core */
-	PASSO_ERROR_NOT_PASSO,  /* the device is not a Passo core */
-	PASSO_ERROR_VERSION,    /* unsupported version of the register map or the link */
-	PASSO_ERROR_PARAMETERS, /* channels, axes or ticks do not match the options */
-	PASSO_ERROR_CORE_RESET, /* the core was reset, or another host wrote to it: open it again */
+	PASSO_ERROR_NOT_PASSO,     /* the device is not a Passo core */
+	PASSO_ERROR_VERSION,       /* unsupported version of the register map or the link */
+	PASSO_ERROR_PARAMETERS,    /* channels, axes or ticks do not match the options */
+	PASSO_ERROR_CLOCK,         /* the core runs at another clock than the options say: passo_machine() */
+	PASSO_ERROR_CLOCK_UNKNOWN, /* neither the core nor the options tell the clock */
+	PASSO_ERROR_CORE_RESET,    /* the core was reset, or another host wrote to it: open it again */
 
 	/* the channel */
 	PASSO_ERROR_NOT_PREPARED, /* no motion is armed and waiting for start */
@@ -110,7 +112,6 @@ enum passo_error {
 	PASSO_ERROR_ARGUMENT_POINTER = PASSO_ERROR_ARGUMENT, /* a pointer, or one in a struct, is null */
 	PASSO_ERROR_ARGUMENT_AXIS,                           /* the channel does not have the axis */
 	PASSO_ERROR_ARGUMENT_CHANNEL,        /* beyond PASSO_CHANNELS_MAX, or of another core */
-	PASSO_ERROR_ARGUMENT_CLOCK,          /* `clock_hz` is 0 */
 	PASSO_ERROR_ARGUMENT_PIN_TIME,       /* longer than PASSO_PIN_CLOCKS_MAX clocks */
 	PASSO_ERROR_ARGUMENT_DRAIN_VELOCITY, /* above half a substep per clock */
 	PASSO_ERROR_ARGUMENT_RATE,           /* an override of 0, or above 100 % */

@@ -7,7 +7,7 @@
 
 #define OPEN_WORDS 4u
 
-static bool fits(uint32_t actual, uint8_t expected)
+static bool fits(uint32_t actual, uint32_t expected)
 {
 	return expected == 0u || actual == expected;
 }
@@ -33,6 +33,22 @@ enum passo_error passo_driver_disown(struct passo *passo)
 	if (error == PASSO_OK)
 		passo->follows = false;
 	return passo_driver_moving(error);
+}
+
+/* Reads the clock of the core; one that does not tell it runs at that of the options. */
+static enum passo_error agree_on_clock(struct passo *passo)
+{
+	const uint32_t expected = passo->machine.clock_hz;
+	uint32_t told;
+	const enum passo_error error = passo_host_read(passo->host, PASSO_ADDRESS_CLOCK, &told, 1);
+
+	if (error != PASSO_OK)
+		return error;
+	if (told != 0u)
+		passo->machine.clock_hz = told;
+	if (passo->machine.clock_hz == 0u)
+		return PASSO_ERROR_CLOCK_UNKNOWN;
+	return fits(passo->machine.clock_hz, expected) ? PASSO_OK : PASSO_ERROR_CLOCK;
 }
 
 /* Reads the identity and parameters of the core and compares them with the options. */
@@ -64,7 +80,7 @@ static enum passo_error identify(struct passo *passo, const struct passo_options
 	passo->has_encoders = passo->follows = core.encoders;
 	passo->host->channels = core.channels;
 	*run = words[3];
-	return PASSO_OK;
+	return agree_on_clock(passo);
 }
 
 static uint64_t watchdog_of(const struct passo *passo, const struct passo_options *options)
@@ -133,8 +149,6 @@ static enum passo_error check(const struct passo *passo, const struct passo_opti
 {
 	if (!passo || !options)
 		return PASSO_ERROR_ARGUMENT_POINTER;
-	if (options->clock_hz == 0u)
-		return PASSO_ERROR_ARGUMENT_CLOCK;
 	return options->channel < PASSO_CHANNELS_MAX ? PASSO_OK : PASSO_ERROR_ARGUMENT_CHANNEL;
 }
 

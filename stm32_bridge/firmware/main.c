@@ -65,15 +65,17 @@ int main(void)
 	    .microseconds = board_microseconds,
 	    .wait = wait,
 	    .irq = board_core_calls};
-	static const struct passo_console_board board = {
-	    .set_baud = set_baud, .set_spi_fast = set_spi_fast, .lost_bytes = lost_bytes};
+	static const struct passo_console_board board = {.set_baud = set_baud,
+	    .set_spi_fast = set_spi_fast,
+	    .spi_fast_hz = SPI_FAST_HZ,
+	    .lost_bytes = lost_bytes};
 	bool crystal = board_start();
 
 	board_watchdog_start();
 	uart_start(UART_BAUD_RESET);
 	spi_start();
 	report(&sink, crystal, crc_start());
-	passo_console_start(&console, &sink, &hardware, &board, PASSO_CLOCK_HZ_RESET, UART_BAUD_RESET);
+	passo_console_start(&console, &sink, &hardware, &board, 0, UART_BAUD_RESET);
 	for (;;) {
 		char byte;
 		unsigned bytes = 0;

@@ -15,6 +15,7 @@ void spi_start(void);
 
 /* Sets SCLK to a quarter of the CPU clock, or to an eighth. */
 void spi_set_fast(bool fast);
+#define SPI_FAST_HZ 72000000u /* clock of the core from which it can be: four clocks to one of SPI */
 
 /* One chip select: exchanges 5 .. 64 words, most significant bit first. They implement `transfer`, `start`
  * and `finish` of struct passo_hardware; context is not used. An exchange that takes longer than some

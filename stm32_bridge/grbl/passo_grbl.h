@@ -42,7 +42,6 @@ enum passo_grbl_alarm {
 /* Machine description; must outlive the console. Masks have a bit per axis. */
 struct passo_grbl_setup {
 	struct passo_path_settings path; /* defaults where a setting exists */
-	struct passo_axis_config pins;   /* the same; in clocks, of all axes */
 	void (*defaults)(struct passo_grbl_settings *settings);
 	uint8_t limits_low, limits_high, homes; /* fitted switches */
 	uint8_t homed; /* axes that home; without a home switch on their limit switch */

@@ -3,6 +3,7 @@
  */
 #include "passo_grbl_private.h"
 #include "passo_math.h"
+#include "passo_release.h"
 
 static void say_command(struct passo_grbl *grbl, const char *letter, passo_gcode_command command)
 {
@@ -52,6 +53,26 @@ void passo_grbl_report_offsets(struct passo_grbl *grbl)
 	passo_grbl_say_length(grbl, gcode->tool_length);
 	passo_grbl_say(grbl, "]\r\n");
 	passo_grbl_report_probe(grbl);
+}
+
+/* Versions of the firmware and of the core; its clock in Hz and its build. */
+void passo_grbl_report_build(struct passo_grbl *grbl)
+{
+	uint32_t words[PASSO_ADDRESS_BUILD - PASSO_ADDRESS_VERSION + 1u] = {0};
+	const uint32_t *const clock_and_build = &words[PASSO_ADDRESS_CLOCK - PASSO_ADDRESS_VERSION];
+
+	passo_host_read(
+	    grbl->player->feed->passo->host, PASSO_ADDRESS_VERSION, words, sizeof words / sizeof *words);
+	passo_grbl_say(
+	    grbl, "[VER:1.1h.passo:]\r\n[OPT:VNM,48,255]\r\n[FIRMWARE:Passo " PASSO_RELEASE "]\r\n[CORE:");
+	for (unsigned bit = PASSO_VERSION_MAJOR_LSB + 8u; bit > 0; bit -= 8u) {
+		passo_grbl_say_number(grbl, words[0] >> (bit - 8u) & 0xFFu);
+		passo_grbl_say(grbl, bit > 8u ? "." : ":");
+	}
+	passo_grbl_say_number(grbl, clock_and_build[0]);
+	passo_grbl_say(grbl, ":");
+	passo_grbl_say_number(grbl, clock_and_build[1]);
+	passo_grbl_say(grbl, "]\r\n");
 }
 
 void passo_grbl_report_probe(struct passo_grbl *grbl)

@@ -67,16 +67,62 @@ void passo_grbl_mind_drives(struct passo_grbl *grbl)
 	}
 }
 
-static enum passo_error apply_pins(struct passo_grbl *grbl, uint32_t pulse)
+/* Of the pins, in clocks. */
+struct timing {
+	uint64_t pulse, turn; /* STEP active and inactive; before and after a change of DIR */
+};
+
+/* A setting in microseconds, rounded up. */
+static uint64_t clocks_of(const struct passo_grbl *grbl, enum passo_grbl_setting setting)
+{
+	return passo_mul_div_ceil(
+	    (uint64_t)grbl->stored.settings.value[setting], grbl->path.machine.clock_hz, MILLION * MILLION);
+}
+
+/* Whether an axis at its speed, and where it reverses at a corner, leaves the pins their times: the core has
+ * four places for steps that wait while DIR turns, two of them are for this. */
+static bool is_in_time(
+    const struct passo_grbl *grbl, const struct passo_path_axis *axis, struct timing timing)
+{
+	const uint64_t hz = grbl->path.machine.clock_hz, both = timing.pulse + timing.turn;
+	const uint64_t steps = passo_mul_div(axis->speed, axis->steps_per_mm, ONE); /* per second */
+	const uint64_t swift = passo_mul_div(hz * ONE, ONE, axis->steps_per_mm) / both;
+	const uint64_t brake = passo_mul_div(axis->acceleration, both, hz);
+	const uint64_t most = swift > brake ? swift - brake : 0;
+	const uint64_t corner = passo_mul_div(8u * axis->acceleration, grbl->path.junction_deviation, ONE);
+
+	return passo_mul_div(steps, 2u * timing.pulse, ONE) <= hz
+	    && (axis->speed <= most || corner <= passo_mul_div(most, most, ONE));
+}
+
+/* Errors: PULSE_TOO_SHORT, below half a clock; STATEMENT, above what the core can count; TOO_FAST. */
+static enum passo_gcode_error check_pins(const struct passo_grbl *grbl, struct timing timing)
+{
+	const uint64_t pulse = (uint64_t)grbl->stored.settings.value[PASSO_GRBL_PULSE];
+
+	if (passo_mul_div(2u * pulse, grbl->path.machine.clock_hz, MILLION * MILLION) == 0)
+		return PASSO_GCODE_PULSE_TOO_SHORT;
+	if (timing.pulse > PASSO_PIN_CLOCKS_MAX || timing.turn > PASSO_PIN_CLOCKS_MAX)
+		return PASSO_GCODE_STATEMENT;
+	for (unsigned axis = 0; axis < grbl->path.machine.axes; axis++) {
+		if (!is_in_time(grbl, &grbl->path.axis[axis], timing))
+			return PASSO_GCODE_TOO_FAST;
+	}
+	return PASSO_GCODE_OK;
+}
+
+static enum passo_error apply_pins(struct passo_grbl *grbl, struct timing timing)
 {
 	const struct passo_grbl_settings *settings = &grbl->stored.settings;
 	struct passo *passo = grbl->player->feed->passo;
-	struct passo_axis_config config = grbl->setup->pins;
+	struct passo_axis_config config = {.in_clocks = true,
+	    .step_high_ns = (uint32_t)timing.pulse,
+	    .step_low_ns = (uint32_t)timing.pulse,
+	    .dir_setup_ns = (uint32_t)timing.turn,
+	    .dir_hold_ns = (uint32_t)timing.turn,
+	    .enable_inverted = passo_grbl_is_on(settings, PASSO_GRBL_ENABLES_INVERTED)};
 	enum passo_error error = PASSO_OK;
 
-	config.in_clocks = true;
-	config.step_high_ns = pulse;
-	config.enable_inverted = passo_grbl_is_on(settings, PASSO_GRBL_ENABLES_INVERTED);
 	for (uint8_t axis = 0; error == PASSO_OK && axis < grbl->path.machine.axes; axis++) {
 		config.step_inverted = passo_grbl_has_axis(settings, PASSO_GRBL_STEPS_INVERTED, axis);
 		config.direction_inverted = passo_grbl_has_axis(settings, PASSO_GRBL_DIRS_INVERTED, axis);
@@ -147,18 +193,16 @@ enum passo_gcode_error passo_grbl_apply(struct passo_grbl *grbl)
 	const struct passo_grbl_settings *settings = &grbl->stored.settings;
 	struct passo_path_planner *path = grbl->player->feed->path;
 	struct passo *passo = grbl->player->feed->passo;
-	const uint64_t pulse = passo_mul_div(2u * (uint64_t)settings->value[PASSO_GRBL_PULSE],
-	    grbl->setup->path.machine.clock_hz, MILLION * MILLION);
 
 	grbl->path = path_of(grbl);
+	const struct timing timing = {clocks_of(grbl, PASSO_GRBL_PULSE), clocks_of(grbl, PASSO_GRBL_TURN)};
 	const enum passo_gcode_error planned =
 	    of_plan(passo_path_open(path, &grbl->path, path->items, path->capacity));
 	if (planned != PASSO_GCODE_OK)
 		return planned;
-	if (pulse == 0)
-		return PASSO_GCODE_PULSE_TOO_SHORT;
-	if (pulse / 2 >= PASSO_PIN_CLOCKS_MAX)
-		return PASSO_GCODE_STATEMENT;
+	const enum passo_gcode_error pins = check_pins(grbl, timing);
+	if (pins != PASSO_GCODE_OK)
+		return pins;
 	apply_travel(grbl);
 	passo_gcode_configure(grbl->player->gcode,
 	    &(struct passo_gcode_settings){
@@ -167,7 +211,7 @@ enum passo_gcode_error passo_grbl_apply(struct passo_grbl *grbl)
 		    (uint32_t)(settings->value[PASSO_GRBL_SPINDLE_LEAST] / PASSO_GCODE_MILLION),
 		.spindle_maximum = (uint32_t)(settings->value[PASSO_GRBL_SPINDLE] / PASSO_GCODE_MILLION),
 		.laser = passo_grbl_is_on(settings, PASSO_GRBL_LASER)});
-	enum passo_error error = apply_pins(grbl, (uint32_t)((pulse + 1) / 2));
+	enum passo_error error = apply_pins(grbl, timing);
 	if (error == PASSO_OK && passo->has_inputs)
 		error = apply_inputs(grbl);
 	if (error == PASSO_OK && passo->has_outputs)

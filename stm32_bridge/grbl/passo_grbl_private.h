@@ -20,6 +20,7 @@ void passo_grbl_report_offsets(struct passo_grbl *grbl);
 void passo_grbl_report_probe(struct passo_grbl *grbl);
 void passo_grbl_report_settings(struct passo_grbl *grbl);
 void passo_grbl_report_starts(struct passo_grbl *grbl);
+void passo_grbl_report_build(struct passo_grbl *grbl);
 void passo_grbl_answer(struct passo_grbl *grbl, enum passo_gcode_error error);
 void passo_grbl_greet(struct passo_grbl *grbl);
 

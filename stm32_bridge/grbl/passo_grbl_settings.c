@@ -35,6 +35,7 @@ static const struct kind KINDS[PASSO_GRBL_SETTINGS] = {
     [PASSO_GRBL_HOME_SEEK] = {25, false, true, 1000000},
     [PASSO_GRBL_DEBOUNCE] = {26, false, false, 1000},
     [PASSO_GRBL_PULL_OFF] = {27, false, true, 1000},
+    [PASSO_GRBL_TURN] = {29, false, false, 1000},
     [PASSO_GRBL_SPINDLE] = {30, true, false, 1000000},
     [PASSO_GRBL_SPINDLE_LEAST] = {31, true, false, 1000000},
     [PASSO_GRBL_LASER] = {32, true, false, 1},

@@ -11,7 +11,7 @@
 #define PASSO_GRBL_STARTS 2u
 
 enum passo_grbl_setting {
-	PASSO_GRBL_PULSE,            /* $0: us */
+	PASSO_GRBL_PULSE,            /* $0: us that STEP is active, and inactive, at least */
 	PASSO_GRBL_IDLE_DELAY,       /* $1: ms until idle drives are disabled; 255: never */
 	PASSO_GRBL_STEPS_INVERTED,   /* $2: a bit per axis */
 	PASSO_GRBL_DIRS_INVERTED,    /* $3 */
@@ -30,6 +30,7 @@ enum passo_grbl_setting {
 	PASSO_GRBL_HOME_SEEK,        /* $25: mm/min */
 	PASSO_GRBL_DEBOUNCE,         /* $26: ms */
 	PASSO_GRBL_PULL_OFF,         /* $27: mm */
+	PASSO_GRBL_TURN,             /* $29: us from DIR to STEP, and from the end of STEP to DIR */
 	PASSO_GRBL_SPINDLE,          /* $30: rpm of full power */
 	PASSO_GRBL_SPINDLE_LEAST,    /* $31: rpm, minimum of a running spindle */
 	PASSO_GRBL_LASER,            /* $32 */

@@ -54,8 +54,9 @@ enum passo_gcode_error passo_grbl_load(struct passo_grbl *grbl)
 	}
 	memset(&grbl->stored, 0, sizeof grbl->stored);
 	set_defaults(grbl);
-	passo_grbl_apply(grbl);
-	return state == PASSO_STORAGE_EMPTY ? PASSO_GCODE_OK : PASSO_GCODE_STORAGE;
+	const enum passo_gcode_error applied = passo_grbl_apply(grbl);
+
+	return state == PASSO_STORAGE_EMPTY ? applied : PASSO_GCODE_STORAGE;
 }
 
 enum passo_gcode_error passo_grbl_save(struct passo_grbl *grbl)

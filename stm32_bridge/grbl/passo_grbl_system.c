@@ -61,7 +61,7 @@ static enum passo_gcode_error at_rest(struct passo_grbl *grbl, const char *text)
 	if (strcmp(text, "#") == 0)
 		passo_grbl_report_offsets(grbl);
 	else if (strcmp(text, "I") == 0)
-		passo_grbl_say(grbl, "[VER:1.1h.passo:]\r\n[OPT:VNM,48,255]\r\n");
+		passo_grbl_report_build(grbl);
 	else if (strcmp(text, "N") == 0)
 		passo_grbl_report_starts(grbl);
 	else if (strcmp(text, "H") == 0)

@@ -18,8 +18,6 @@ from passo_stm32.wires import CorePins
 
 ELF = paths.build / "firmware" / "passo.elf"
 ANSWERS = ("ok", "error:")
-FAST_SCLK_HZ = 18_000_000
-CLOCKS_PER_SCLK = 4  # minimum
 FAST_BAUD = 1_000_000
 START = 0.3  # seconds until the greeting of the console, even without a crystal
 LATENCY = 0.001  # seconds
@@ -129,9 +127,7 @@ class Board(Machine):
         super().__init__(elf or firmware_elf(), core, **options)
         self.expect("help lists the commands\n", START)
         self.run(LATENCY)
-        if isinstance(core, Engine):
-            if core.clock_hz < CLOCKS_PER_SCLK * FAST_SCLK_HZ:
-                self.ask("config spi_slow=1")
+        if isinstance(core, Engine) and not core.parameters.clock_hz:
             self.must(f"config clock_hz={core.clock_hz}")
         if fast:
             self.set_baud(FAST_BAUD)

@@ -19,7 +19,7 @@ from passo_stm32.grbl_board import FOLDER, GrblBoard, grbl_elf
 REPORT = paths.reference / "firmware_gcode_report.md"
 PAGE = paths.root / "benchmarks" / "firmware_gcode_page.md"
 HZ = 72_000_000  # of processor and core
-PARAMETERS = Parameters(axes=4)
+PARAMETERS = Parameters(axes=4, clock_hz=HZ)
 BAUDS = (115_200, 1_000_000)
 LINES = 2000  # of the long file
 COUNTED, CALLED = 600, 200  # for the rates, and for each of the calls
@@ -62,7 +62,7 @@ def segments(count: int) -> list[str]:
 
 def open_board(baud: int) -> GrblBoard:
     """A board at a core of 72 MHz, with axes that do not hold up the lines."""
-    elf = grbl_elf(paths.build / f"firmware_grbl_{baud}", f"CORE_HZ={HZ}", "AXES=3", f"BAUD={baud}")
+    elf = grbl_elf(paths.build / f"firmware_grbl_{baud}", "AXES=3", f"BAUD={baud}")
     board = GrblBoard(model_engine(PARAMETERS, HZ), elf, baud=baud)
     for axis in "01":
         for setting in ("11", "12"):

@@ -19,7 +19,7 @@ ANSWER = re.compile(r"^(ok|error:\d+)\r\n", re.M)
 
 
 def grbl_elf(folder: Path = FOLDER, *machine: str) -> Path:
-    """Build the image if it is out of date; `machine` are the definitions of grbl_machine.h, CORE_HZ=... ."""
+    """Build the image if it is out of date; `machine` are the definitions of grbl_machine.h, AXES=3 ... ."""
     elf = folder / "passo.elf"
     flags = " ".join(f"-D{definition}" for definition in machine)
     make_firmware("GRBL=1", f"OUT={folder}", f"MACHINE={flags}", str(elf))

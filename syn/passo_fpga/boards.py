@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from passo.toolchain import paths
+from passo.values import meant
 
 from passo_fpga import parts as core_parts
 from passo_fpga.devices import DEVICES, Device
@@ -126,7 +127,8 @@ def boards() -> dict[str, Board]:
 def board(name: str) -> Board:
     """A board by name; raises TableError, or BoardError if there is no such board."""
     if name not in names():
-        raise BoardError(f"unknown board '{name}'; must be one of {', '.join(names())}")
+        hint = meant(name, tuple(names())) or f"; must be one of {', '.join(names())}"
+        raise BoardError(f"unknown board '{name}'{hint}")
     table = Table.read(name, FOLDER / name / TABLE)
     title = table.text("title")
     device = _device(table, title)

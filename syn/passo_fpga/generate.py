@@ -3,7 +3,9 @@
 
 import json
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
+from zlib import crc32
 
 from passo.output import write_text
 from passo.toolchain import paths
@@ -45,7 +47,10 @@ def generate(
     mhz: float | None = None,
     parts: Sequence[str] = (),
 ) -> tuple[Design, Path]:
-    """Write both files into `folder`; return the design and the pin file."""
+    """Write both files into `folder`; return the design and the pin file.
+
+    Its parameter BUILD is a checksum of all that the bitstream is made of.
+    """
     family = board.device.family
     folder.mkdir(parents=True, exist_ok=True)
     pll, pins = folder / "passo_board_pll.v", folder / f"pins.{family.pins_suffix}"
@@ -59,7 +64,12 @@ def generate(
         left_out=board.left_out,
         extra_sources=(TOP, paths.syn / "families" / f"{family.name}.v", pll),
     )
-    return design, pins
+    return replace(design, parameters={**design.parameters, "BUILD": _checksum(design, pins)}), pins
+
+
+def _checksum(design: Design, pins: Path) -> int:
+    texts = [path.read_bytes() for path in (*design.sources, *sorted(paths.rtl.glob("*.vh")), pins)]
+    return crc32(b"\0".join([repr((design.device.name, sorted(design.parameters.items()))).encode(), *texts]))
 
 
 def pll_file(board: Board, mhz: float | None = None) -> str:

@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeVar
 
 from passo.pins import INPUTS, OUTPUTS
+from passo.values import meant
 
 from passo_fpga.table import BoardError, Table
 
@@ -27,7 +28,8 @@ def chosen(text: str) -> tuple[str, ...]:
     """The parts of a list with commas; raises BoardError."""
     wanted = [part for part in text.split(",") if part]
     if unknown := sorted(set(wanted) - set(PORTS)):
-        raise BoardError(f"unknown part '{unknown[0]}'; must be one of {', '.join(PORTS)}")
+        hint = meant(unknown[0], tuple(PORTS)) or f"; must be one of {', '.join(PORTS)}"
+        raise BoardError(f"unknown part '{unknown[0]}'{hint}")
     return tuple(part for part in PORTS if part in wanted)
 
 

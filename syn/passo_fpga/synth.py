@@ -93,6 +93,7 @@ def make(
     best = tried[good] if good is not None else max(tried.values(), key=_slack)
     used, capacity = best.used, chosen.device.capacity
     size = f"{used:,} of {capacity:,} {family.size_unit} ({used / capacity:.0%})"
+    print(f"  build      {design.parameters['BUILD']}, as the core tells it")
     print(f"  size       {size}, {made['FF']:,} FF, {best.bram} BRAM, {made['DSP']} DSP")
     if moved := moved_registers(design):
         print(f"  registers  {moved} more packed into block RAMs")

@@ -51,7 +51,7 @@ def play_on_model(made: Path, histories: list[History]) -> Logs:
 
 def play_on_board(elf: Path, history: History) -> list[str]:
     """The log of a history on the firmware; its machine has no inputs, and its flash does not wear."""
-    with model_engine(Parameters(axes=4), BOARD_HZ) as engine:
+    with model_engine(Parameters(axes=4, clock_hz=BOARD_HZ), BOARD_HZ) as engine:
         board = GrblBoard(engine, elf, baud=BAUD)
         return _Board(board).play(history)
 
@@ -146,7 +146,7 @@ def main() -> int:
     folder = paths.build / "tests" / "grbl_histories"
     seeds = range(options.seed, options.seed + options.count)
     if options.board:
-        elf = grbl_elf(folder, f"CORE_HZ={BOARD_HZ}", "AXES=3", f"BAUD={BAUD}")
+        elf = grbl_elf(folder, "AXES=3", f"BAUD={BAUD}")
         play, logs = (
             (lambda history: play_on_board(elf, history)),
             (play_on_board(elf, made_of(seed)) for seed in seeds),

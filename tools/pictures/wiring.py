@@ -1,45 +1,18 @@
 # SPDX-License-Identifier: MIT
 """The wiring of a board: of syn/BOARD/board.toml and of the table in docs/firmware.md."""
 
-import re
 from typing import Any
 
 import matplotlib.pyplot as plt
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch
 from passo.plot_panels import COLORS, INK
-from passo.toolchain import paths
 from passo_fpga.boards import Board
+from passo_fpga.places import LINK, host_pins, places
 
 from tools.pictures.style import GREY, PALE
 
 AXIS_PINS = {"step": "STEP", "dir": "DIR", "enable": "EN"}
-LINK = ("spi_cs_n", "spi_sclk", "spi_mosi", "spi_miso", "irq")
-
-
-def host_pins() -> dict[str, str]:
-    """Pins of the Blue Pill by the signal of the core, from the table in docs/firmware.md."""
-    text = (paths.docs / "firmware.md").read_text(encoding="utf-8")
-    found = {signal: pin for pin, signal in re.findall(r"^\| (P\w+) \| [^|]* \| `(\w+)`", text, re.M)}
-    assert set(found) == set(LINK), found
-    return found
-
-
-def places(name: str) -> dict[str, str]:
-    """Where a board has the pins of its signals, from the comments of its table: `J2 25`."""
-    text = (paths.root / "syn" / name / "board.toml").read_text(encoding="utf-8")
-    found = {
-        signal: note.split(",")[0].strip()
-        for signal, note in re.findall(r"^(spi_\w+|irq|sync) = .*?# (.*)$", text, re.M)
-    }
-    axes = re.findall(r"^  \{ step = .*?\}, *(?:# (.*))?$", text, re.M)
-    for axis, note in enumerate(axes):
-        connector = ""
-        for signal, place in zip(AXIS_PINS, filter(None, note.split(",")), strict=False):
-            *words, number = place.split()
-            connector = " ".join(words) or connector
-            found[f"{signal}{axis}"] = f"{connector} {number}"
-    return found
 
 
 def wiring(board: Board) -> Any:
@@ -47,7 +20,7 @@ def wiring(board: Board) -> Any:
     where = places(board.name)
     link = [[signal, host_pins()[signal], board.pins[signal].pin, where.get(signal, "")] for signal in LINK]
     axes = [
-        [[label, pins[signal].pin, where.get(f"{signal}{axis}", "")] for signal, label in AXIS_PINS.items()]
+        [[label, pins[signal].pin, where.get(f"{signal}[{axis}]", "")] for signal, label in AXIS_PINS.items()]
         for axis, pins in enumerate(board.axis_pins)
     ]
     return [board.title, link, axes]

@@ -17,6 +17,8 @@ module soak_player #(
   parameter INPUTS          = 0,
   parameter ENCODERS        = 0,
   parameter OUTPUTS         = 0,
+  parameter CLOCK_HZ        = 0,
+  parameter BUILD           = 0,
   parameter STEP_RESET      = 0,
   parameter DIR_RESET       = 0,
   parameter ENABLE_RESET    = 0
@@ -45,6 +47,8 @@ module soak_player #(
     .INPUTS         (INPUTS),
     .ENCODERS       (ENCODERS),
     .OUTPUTS        (OUTPUTS),
+    .CLOCK_HZ       (CLOCK_HZ),
+    .BUILD          (BUILD),
     .STEP_RESET     (STEP_RESET),
     .DIR_RESET      (DIR_RESET),
     .ENABLE_RESET   (ENABLE_RESET)

@@ -4,7 +4,6 @@
 #define POLLS 2000u   /* of the feed in a second, at least */
 #define RESERVES 200u /* in a second: the core has so much, however the lines come */
 
-#define PIN_CLOCKS ((CORE_HZ + 999999u) / 1000000u) /* 1 us */
 #define MILLION ((int64_t)PASSO_GCODE_MILLION)
 #define AXES_USED (AXES > 0 ? AXES : PASSO_GCODE_AXES_MAX)
 #define LINEAR_AXES 2u /* X and Y; Z and what follows are slow */
@@ -17,8 +16,8 @@ static const uint16_t VALUES[PASSO_GRBL_SETTINGS] = {
     [PASSO_GRBL_HOMES_LOW] = 0,
     [PASSO_GRBL_HOME_FEED] = 120,
     [PASSO_GRBL_HOME_SEEK] = 1200,
-    [PASSO_GRBL_DEBOUNCE] = 1,
     [PASSO_GRBL_PULL_OFF] = 1,
+    [PASSO_GRBL_TURN] = 1,
     [PASSO_GRBL_SPINDLE] = 1000,
 };
 
@@ -34,6 +33,7 @@ static void grbl_defaults(struct passo_grbl_settings *settings)
 	for (unsigned i = 0; i < PASSO_GRBL_SETTINGS; i++)
 		settings->value[i] = VALUES[i] * MILLION;
 	settings->value[PASSO_GRBL_PULSE] = 2 * MILLION;
+	settings->value[PASSO_GRBL_DEBOUNCE] = 2 * MILLION / 5; /* that a core of 160 MHz can count */
 	settings->value[PASSO_GRBL_DEVIATION] = MILLION / 100;
 	settings->value[PASSO_GRBL_ARC_TOLERANCE] = MILLION / 500;
 	for (unsigned i = 0; i < PASSO_GRBL_AXIS_SETTINGS * PASSO_GCODE_AXES_MAX; i++) {
@@ -48,9 +48,8 @@ void grbl_machine(
 {
 	*setup = (struct passo_grbl_setup){.path = {.machine = *passo_machine(passo),
 					       .profile = PASSO_PROFILE_LINEAR,
-					       .reserve_clocks = CORE_HZ / RESERVES,
+					       .reserve_clocks = passo_machine(passo)->clock_hz / RESERVES,
 					       .polls = POLLS},
-	    .pins = {.step_low_ns = PIN_CLOCKS, .dir_setup_ns = PIN_CLOCKS, .dir_hold_ns = PIN_CLOCKS},
 	    .limits_low = LIMITS_LOW,
 	    .limits_high = LIMITS_HIGH,
 	    .homes = HOMES,

@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: MIT
  * The machine at the core: what the settings cannot say, and the settings before the first `$n=`. Each value
- * can be given to the makefile: MACHINE="-DCORE_HZ=48000000 -DPROBE=1".
+ * can be given to the makefile: MACHINE="-DAXES=3 -DPROBE=1".
  */
 #ifndef GRBL_MACHINE_H
 #define GRBL_MACHINE_H
 
 #include "passo.h"
 #include "passo_grbl.h"
-
-/* Clock of the core. */
-#ifndef CORE_HZ
-#define CORE_HZ 100000000
-#endif
 
 /* Of the serial line to the host. */
 #ifndef BAUD

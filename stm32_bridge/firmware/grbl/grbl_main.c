@@ -10,7 +10,6 @@
 #define LOOK_AHEAD 48u       /* lines */
 #define SLEWS_PER_SECOND 20u /* of hold and stop, from full speed */
 #define DRAIN_VELOCITY 65536u
-#define SPI_FAST_HZ 72000000u    /* of the core: four clocks to a clock of SPI */
 #define SLEEP_MICROSECONDS 4000u /* a sleep takes up to a quarter */
 #define REPORT_BYTES 384u        /* a report of six axes, and some answers */
 #define SEARCH_MILLISECONDS 100u
@@ -108,14 +107,16 @@ static void pause(uint32_t milliseconds, bool fault)
 /* A motion that an earlier start of the board has left running is stopped. */
 static enum passo_error open_core(void)
 {
-	static const uint64_t SLEW = CORE_HZ / SLEWS_PER_SECOND;
-	enum passo_error error =
-	    passo_open(&passo, &host, &hardware, &(struct passo_options){.clock_hz = CORE_HZ});
+	spi_set_fast(false); /* any core can follow */
+	enum passo_error error = passo_open(&passo, &host, &hardware, &(struct passo_options){0});
+	const uint32_t clock_hz = passo_machine(&passo)->clock_hz, slew = clock_hz / SLEWS_PER_SECOND;
 
 	if (error == PASSO_ERROR_ESTOP && passo_clear_estop(&passo) == PASSO_OK)
 		error = passo_clear(&passo);
-	if (error == PASSO_OK)
-		return passo_configure_motion(&passo, SLEW, SLEW, DRAIN_VELOCITY);
+	if (error == PASSO_OK) {
+		spi_set_fast(clock_hz >= SPI_FAST_HZ);
+		return passo_configure_motion(&passo, slew, slew, DRAIN_VELOCITY);
+	}
 	if (error == PASSO_ERROR_MOVING)
 		passo_stop(&passo);
 	return error;
@@ -164,7 +165,6 @@ int main(void)
 	board_watchdog_start();
 	uart_start(BAUD);
 	spi_start();
-	spi_set_fast(CORE_HZ >= SPI_FAST_HZ);
 	report(crystal, crc_start());
 	for (;;) {
 		start();

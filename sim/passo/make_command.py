@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: MIT
+"""`passo make`: from a machine file to what a board, its firmware and a sender need.
+
+Everything is checked before anything is written.
+"""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from passo_fpga.boards import OSCILLATOR, Board, board, names
+from passo_fpga.places import host_pins, places
+from passo_fpga.table import BoardError
+
+from passo.failure import BadInputError
+from passo.gcode import AXIS_LETTERS
+from passo.grbl_setup import MILLION, default_settings
+from passo.machine_file import MachineFile, read_machine
+from passo.native import ffi, planner
+from passo.output import empty_folder, write_text
+from passo.pins import INPUTS
+from passo.toolchain import need_repository, paths
+
+SETTINGS, WIRING, SUMMARY, COMMANDS = "settings.txt", "wiring.txt", "summary.txt", "flash.sh"
+SPEED_AT = 110  # first setting of the speeds
+NO_SETTING = 0xFF
+OUTPUTS = ("spindle on", "spindle reverse", "flood coolant", "mist coolant")  # bits 0 to 3
+SWITCH_PORTS = {"limit_low": "limit, low end", "limit_high": "limit, high end", "home": "home switch"}
+AXIS_PORTS = {"step": "STEP (PUL)", "dir": "DIR", "enable": "EN (ENA)"}
+INPUT_NAMES = {pin.name for pin in INPUTS}
+OTHER_PORTS = {
+    "power": "spindle PWM or laser",
+    "led": "on the board",
+    "estop_n": "e-stop, closed to 3.3 V; without one a wire to 3.3 V",
+}
+
+
+def make_machine(path: Path, out: Path | None = None) -> None:
+    """Write the results of a machine file and print the summary. Raises BadInputError."""
+    need_repository("passo make")
+    machine = read_machine(path)
+    if not machine.board:
+        raise BadInputError(f"{path}: board is missing; must be one of {', '.join(names())}")
+    _check_firmware(machine)
+    chosen, parts = board(machine.board), _parts(machine)
+    try:
+        wires = list(_wires(machine, chosen, parts))
+    except BoardError as error:
+        raise BadInputError(f"{path}: {error}") from None
+    summary = list(_summary(machine, chosen, parts))
+    results = {
+        SETTINGS: settings_lines(machine),
+        WIRING: _aligned([("signal", "FPGA pin", "on the board", "to"), *wires]),
+        SUMMARY: summary,
+        COMMANDS: list(_commands(machine, chosen, parts)),
+    }
+    folder = out or paths.results / "machines" / path.stem
+    empty_folder(folder, results)
+    for name, lines in results.items():
+        write_text(folder / name, "\n".join([*lines, ""]))
+    print("\n".join([*summary, f"written to {folder}: {', '.join(results)}"]))
+
+
+def _check_firmware(machine: MachineFile) -> None:
+    """Refuse what the image cannot do."""
+    if machine.settings.profile != "linear":
+        profile = machine.settings.profile
+        raise BadInputError(f'{machine.path}: profile is "{profile}"; the ramps of the firmware are linear')
+    for letter, axis in zip(AXIS_LETTERS, machine.settings.axes, strict=False):
+        for key in ("jump", "jerk"):
+            if getattr(axis, key):
+                raise BadInputError(f"{machine.path}: axis {letter}: {key} is no setting of the firmware")
+
+
+def _parts(machine: MachineFile) -> list[str]:
+    wanted = {"inputs": machine.has_inputs, "outputs": machine.gcode.spindle_maximum > 0}
+    return [part for part, needed in wanted.items() if needed]
+
+
+def _text(millionths: int) -> str:
+    whole, rest = divmod(millionths, MILLION)
+    return f"{whole}.{rest:06}".rstrip("0").rstrip(".")
+
+
+def settings_lines(machine: MachineFile) -> list[str]:
+    """`$n=` of all settings. No line needs a later one: speeds are low until the pins have their times."""
+    c, axes = planner(), len(machine.settings.axes)
+    made, whole = default_settings(machine), ffi().new("bool *")
+    values = {}
+    while (number := c.passo_grbl_setting_number(len(values), axes, whole)) != NO_SETTING:
+        values[number] = c.passo_grbl_setting(made, number, axes)[0]
+    speeds = range(SPEED_AT, SPEED_AT + axes)
+    homing = 22  # before soft limits
+    order = sorted(values, key=lambda number: (number in speeds, number != homing, number))
+    return [
+        *(f"${number}=1" for number in speeds),
+        *(f"${number}={_text(values[number])}" for number in order),
+    ]
+
+
+def _wires(machine: MachineFile, chosen: Board, parts: list[str]) -> Iterator[tuple[str, ...]]:
+    where, host = places(chosen.name), host_pins()
+    for port, pin in chosen.ports(len(machine.settings.axes), parts).items():
+        if port != OSCILLATOR:
+            name, index = re.fullmatch(r"(\w+?)(?:\[(\d+)\])?", port).groups()
+            there = where.get(port if index else f"{name}[0]", where.get(port, ""))
+            yield port, pin.pin, there, _end(machine, host, name, int(index or 0)) or _unused(name)
+
+
+def _unused(name: str) -> str:
+    """An input that floats keeps the inputs unknown: no motion begins."""
+    return "ground" if name in INPUT_NAMES else "not connected"
+
+
+def _end(machine: MachineFile, host: dict[str, str], name: str, index: int) -> str:
+    """What a wire leads to; nothing if it is not used."""
+    if name in host:
+        return f"Blue Pill {host[name]}"
+    if name in AXIS_PORTS:
+        return f"drive {AXIS_LETTERS[index]}: {AXIS_PORTS[name]}"
+    if name in SWITCH_PORTS:
+        fitted = name in machine.ends[index].switches
+        return f"{AXIS_LETTERS[index]}: {SWITCH_PORTS[name]}" if fitted else ""
+    if name == "probe":
+        return "probe" if machine.switches.probe else ""
+    if name == "outputs":
+        return OUTPUTS[index] if index < len(OUTPUTS) else ""
+    return OTHER_PORTS.get(name, "")
+
+
+def _aligned(rows: list[tuple[str, ...]]) -> list[str]:
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return ["  ".join(map(str.ljust, row, widths)).rstrip() for row in rows]
+
+
+def _summary(machine: MachineFile, chosen: Board, parts: list[str]) -> Iterator[str]:
+    axes, pins = machine.settings.axes, machine.pins
+    yield f"{machine.path.name}: {chosen.title}"
+    with_parts = ", ".join(parts) or "no parts"
+    yield f"  core   {len(axes)} of {chosen.axes} axes, {with_parts}, {chosen.clock_mhz:g} MHz"
+    longest = {"STEP": max(pins.step_high, pins.step_low), "DIR": max(pins.dir_setup, pins.dir_hold)}
+    times = (f"{name} {clocks / machine.clock_hz * 1e6:.3g} us" for name, clocks in longest.items())
+    yield f"  pins   {', '.join(times)}; EN active {'low' if machine.enable_inverted else 'high'}"
+    if not machine.enable_inverted:
+        yield "         EN is high from power-up on: the drives hold before the firmware starts"
+    most = machine.clock_hz / (2 * longest["STEP"])
+    for letter, axis, end in zip(AXIS_LETTERS, axes, machine.ends, strict=False):
+        steps = float(axis.speed * axis.steps_per_mm)
+        fitted = ", ".join(end.switches) or "no switches"
+        yield f"  {letter}      {steps:,.0f} steps/s of at most {most:,.0f}; {fitted}"
+
+
+def _mask(machine: MachineFile, name: str) -> int:
+    return sum((name in end.switches) << axis for axis, end in enumerate(machine.ends))
+
+
+def _commands(machine: MachineFile, chosen: Board, parts: list[str]) -> Iterator[str]:
+    homed = sum((end.home is not None) << axis for axis, end in enumerate(machine.ends))
+    values = {
+        "AXES": len(machine.ends),
+        "HOMES": _mask(machine, "home"),
+        "LIMITS_LOW": _mask(machine, "limit_low"),
+        "LIMITS_HIGH": _mask(machine, "limit_high"),
+        "HOMED": homed,
+        "PROBE": int(machine.switches.probe),
+    }
+    definitions = " ".join(f"-D{name}={value}" for name, value in values.items())
+    with_parts = f" PARTS={','.join(parts)}" if parts else ""
+    yield "#!/bin/sh -e"
+    yield "# In the folder of the repository. Then send the lines of settings.txt with any sender."
+    yield f"make synth BOARD={chosen.name} AXES={len(machine.ends)}{with_parts}"
+    yield f"{chosen.load} build/synth/{chosen.name}.{chosen.device.family.suffix}"
+    yield f'make firmware GRBL=1 MACHINE="{definitions}"'
+    yield "st-flash --reset write build/firmware_grbl/passo.bin 0x08000000"

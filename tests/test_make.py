@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: MIT
+"""`passo make`: a machine file becomes settings, wires and commands, or one sentence and nothing."""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from passo.cli import main
+from passo.engine import model_engine
+from passo.grbl import Grbl
+from passo.grbl_setup import core_for, machine_at
+from passo.machine_file import read_machine
+from passo.make_command import settings_lines
+from passo.toolchain import paths
+from passo_fpga.boards import board
+from passo_stm32.grbl_board import GrblBoard, grbl_elf
+
+from tests.test_makefile import make
+
+ROUTER = paths.examples / "machines" / "router.toml"
+TEXT = ROUTER.read_text(encoding="utf-8")
+HZ = 108_000_000  # of the board
+
+
+def made(path: Path, folder: Path) -> dict[str, list[str]]:
+    """The lines of all results."""
+    assert main(["make", str(path), "--out", str(folder)]) == 0
+    return {file.name: file.read_text().splitlines() for file in folder.iterdir()}
+
+
+def test_results(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Every port has a wire, to a pin of its own; the commands are those that make takes."""
+    results = made(ROUTER, tmp_path / "router")
+    assert set(results) == {"settings.txt", "wiring.txt", "summary.txt", "flash.sh"}
+    _, *rows = (re.split(r" {2,}", line) for line in results["wiring.txt"])
+    wires = {row[0]: row[1:] for row in rows}
+    ports = board("hx8k").ports(3, ["inputs", "outputs"])
+    assert {port: wire[0] for port, wire in wires.items()} == {
+        port: pin.pin for port, pin in ports.items() if port != "oscillator"
+    }
+    assert wires["step[1]"] == ["N16", "J2 9", "drive Y: STEP (PUL)"]
+    assert wires["home[2]"] == ["T10", "J3 17", "Z: home switch"]
+    assert wires["limit_low[0]"][-1] == wires["alarm[2]"][-1] == wires["sync"][-1] == "ground"
+    assert wires["spi_sclk"][-1] == "Blue Pill PA5" and wires["compare"][-1] == "not connected"
+    commands = [line for line in results["flash.sh"] if line.startswith("make ")]
+    assert commands[0] == "make synth BOARD=hx8k AXES=3 PARTS=inputs,outputs"
+    for command in commands:
+        words = re.findall(r'(?:[^ "]|"[^"]*")+', command)[1:]
+        assert make(*(word.replace('"', "") for word in words)).returncode == 0
+    told = capsys.readouterr().out
+    assert "12,000 steps/s of at most 200,000" in told and "EN is high from power-up on" in told
+
+
+def test_an_earlier_result_does_not_stay(tmp_path: Path) -> None:
+    """If the file has become wrong, it is as it was; if it is right, all is new."""
+    path, folder = tmp_path / "one.toml", tmp_path / "one"
+    path.write_text(TEXT)
+    before = made(path, folder)
+    path.write_text(TEXT.replace("speed = 150", "speed = 15000", 1))
+    assert main(["make", str(path), "--out", str(folder)]) == 2
+    assert {file.name: file.read_text().splitlines() for file in folder.iterdir()} == before
+    path.write_text(TEXT.replace("speed = 150", "speed = 100", 1))
+    assert "$110=6000" in made(path, folder)["settings.txt"]
+
+
+def test_settings_are_taken_one_by_one() -> None:
+    """In that order, from any settings before; then they are those of the file."""
+    machine = read_machine(ROUTER)
+    said: list[str] = []
+    with machine_at("model", machine) as engine:
+        grbl = Grbl(engine, machine, said.append)
+        grbl.line(b"$$")
+        expected = "".join(said).partition("$0")[2]
+        # a machine that is as different as can be
+        for line in ("$0=31", "$29=31", "$100=1", "$101=1", "$102=1", "$22=0", "$110=500000", "$3=7", "$4=1"):
+            said.clear()
+            grbl.line(line.encode())
+            assert "".join(said) == "ok\r\n", line
+        for line in settings_lines(machine):
+            said.clear()
+            grbl.line(line.encode())
+            assert "".join(said) == "ok\r\n", line
+        said.clear()
+        grbl.line(b"$$")
+        assert "".join(said).partition("$0")[2] == expected
+
+
+def test_the_firmware_takes_them(tmp_path: Path) -> None:
+    """The image of the commands, at the core of the board, on the emulated chip; settings outlast a reset."""
+    results = made(ROUTER, tmp_path)
+    (definitions,) = re.findall(r'MACHINE="(.*)"', "\n".join(results["flash.sh"]))
+    elf = grbl_elf(paths.build / "tests" / "firmware_router", *definitions.replace("-D", "").split())
+    with model_engine(replace(core_for(read_machine(ROUTER)), axes=3), HZ) as engine:
+        assert engine.parameters.clock_hz == HZ
+        board = GrblBoard(engine, elf)
+        first, *answers = (board.line(line) for line in results["settings.txt"])
+        assert first == "[MSG:'$H'|'$X' to unlock]\nok" and set(answers) == {"ok"}
+        board.restart()
+        settings = board.line("$$").splitlines()
+        assert {"$0=2.500", "$29=5.000", "$5=1", "$23=3", "$110=9000.000", "$112=1200.000"} < set(settings)
+        assert f":{HZ}:0]" in board.line("$I")
+
+
+WRONG = [
+    ("board =", "bord =", "unknown key 'bord'; did you mean board?"),
+    ('"hx8k"', '"hx8"', "board must be one of .*, not 'hx8'; did you mean hx8k?"),
+    ('board = "hx8k"\n', "clock_hz = 108_000_000\n", "board is missing; must be one of "),
+    (
+        'board = "hx8k"\n',
+        'board = "hx8k"\nclock_hz = 100_000_000\n',
+        "clock_hz is 100000000, but .* at 108000000 Hz",
+    ),
+    ('board = "hx8k"', 'board = "colorlight"', "the table has no pins for part 'inputs'; it has none"),
+    ('board = "hx8k"', 'board = "tangnano9k"', "inputs.limit_low: 3 are needed for 3 axes, the table has 2"),
+    ('"DM542"', '"DM524"', "drive must be one of .*; did you mean DM542?"),
+    ("speed = 150", "speed = 2501", "axis 1: speed is 2501; the pins allow at most 2500"),
+    ("speed = 150", 'speed = "150mm"', "axis 1: speed must be a number, not '150mm'"),
+    ("speed = 150", "speed = -1", "axis 1: speed must not be negative"),
+    ("acceleration = 500", "aceleration = 500", "axis 1: unknown key .*; did you mean acceleration?"),
+    ('switches = ["home"]', "switches = []", 'axis 1: home = "low" needs "home" or "limit_low" in switches'),
+    (
+        'switches = ["home"]',
+        'switches = ["end"]',
+        "axis 1: switches must be an array of home, limit_low, limit_high",
+    ),
+    ('home = "low"', 'home = "left"', 'axis 1: home must be "low" or "high", not'),
+    ('name = "Y"', 'name = "Z"', 'axis 2: name must be "Y", not'),
+    (
+        'drive = "DM542"',
+        'drive = "DM542"\nprofile = "cosine"',
+        'profile is "cosine"; the ramps of the firmware',
+    ),
+    ('name = "X"', 'name = "X"\njump = 2', "axis X: jump is no setting of the firmware"),
+    ("[switches]", '[pins]\nstep_high = "2mm"\n[switches]', "pins: step_high"),
+    (
+        "[switches]",
+        '[pins]\nstep_high = "1ms"\n[switches]',
+        "pins: step_high is 108000 clocks; must be at most 65535",
+    ),
+    ("[[axis]]", "[[axs]]", "unknown key 'axs'; did you mean axis?"),
+    ("spindle_maximum = 24000", "spindle_maximum = 0", "spindle_maximum must be 1 to"),
+    ("[switches]", "[switches", "Expected"),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "said"), WRONG)
+def test_wrong_files(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], old: str, new: str, said: str
+) -> None:
+    """One sentence with the file, the key and the reason; nothing is written."""
+    path = tmp_path / "wrong.toml"
+    assert old in TEXT
+    path.write_text(TEXT.replace(old, new, 1))
+    assert main(["make", str(path), "--out", str(tmp_path / "out")]) == 2
+    told = capsys.readouterr().err
+    assert told.startswith(f"{path}: ") and told.count("\n") == 1 and re.search(said, told)
+    assert not (tmp_path / "out").exists()
+
+
+def test_too_many_axes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """For the board."""
+    more = "".join(
+        f'[[axis]]\nname = "{name}"\nsteps_per_mm = 80\nspeed = 10\nacceleration = 100\n' for name in "AB"
+    )
+    path = tmp_path / "five.toml"
+    path.write_text(TEXT + more)
+    assert main(["make", str(path), "--out", str(tmp_path / "out")]) == 2
+    assert "axes: 5 are wanted, and the table has pins for 4" in capsys.readouterr().err
