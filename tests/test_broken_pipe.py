@@ -58,12 +58,11 @@ def test_it_ends_quietly(
 
 @pytest.mark.parametrize("command", [("rtl",), CONSOLE], ids=["rtl", "grbl"])
 def test_in_a_shell(command: tuple[str, ...]) -> None:
-    """`passo ... | head -1`, to the end of the interpreter."""
+    """`passo ... | head -1`, to the end of the interpreter, when nothing is to be built any more."""
+    whole = [sys.executable, "-m", "passo.cli", *command]
+    subprocess.run(whole, stdin=subprocess.DEVNULL, capture_output=True, check=True)
     writer = broken()
-    done = subprocess.run(
-        [sys.executable, "-m", "passo.cli", *command],
-        input="".join(LINES), stdout=writer, stderr=subprocess.PIPE, text=True,
-    )  # fmt: skip
+    done = subprocess.run(whole, input="".join(LINES), stdout=writer, stderr=subprocess.PIPE, text=True)
     os.close(writer)
     assert (done.returncode, done.stderr) == (BROKEN, "")
 
