@@ -96,4 +96,8 @@ def test_corners_are_the_ends_of_the_parameters(name: str) -> None:
 def test_every_number_of_the_core_has_its_corners(top: str) -> None:
     """A parameter that is added to the core is added to its tops and here."""
     head = (paths.rtl / f"{top}.v").read_text().partition(") (")[0]
-    assert set(re.findall(r"^ *parameter .*?(\w+) *=", head, re.M)) == {*lint_rtl.ENDS, *lint_rtl.LEVELS}
+    assert set(re.findall(r"^ *parameter .*?(\w+) *=", head, re.M)) == {
+        *lint_rtl.ENDS,
+        *lint_rtl.LEVELS,
+        *lint_rtl.TOLD,
+    }

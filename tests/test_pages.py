@@ -46,7 +46,7 @@ def test_the_moves_of_the_tutorial(tmp_path: Path) -> None:
 
 
 def test_the_session_of_the_readme(tmp_path: Path) -> None:
-    (session,) = [block for block in blocks(README, "") if block.startswith("config ")]
+    (session,) = [block for block in blocks(README, "") if block.startswith("enable\n")]
     said = shell(tmp_path, "passo console --engine model --echo", session)
     answers = [line for line in said.splitlines() if line.startswith(("ok", "error"))]
     assert answers == ["ok"] * len(session.splitlines())

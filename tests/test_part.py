@@ -50,7 +50,7 @@ def test_the_example(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     """Command, summary, picture."""
     arguments = ["run", str(PART), "--machine", str(MACHINE), "--out", str(tmp_path), "--plot"]
     assert cli.main(arguments) == 0
-    assert "24 lines, 530 chords in 12.10" in capsys.readouterr().out
+    assert "24 lines, 530 chords in 12.09" in capsys.readouterr().out
     summary = json.loads((tmp_path / "summary.json").read_text())
     assert summary["ok"] and summary["end"]["steps"] == [0, 0, 0]
     assert (summary["lines"], summary["chords"], summary["motions"]) == (24, 530, 1)

@@ -38,6 +38,8 @@ always @*
     ADDRESS_IDENTIFICATION: f_word = "PASO";
     ADDRESS_VERSION: f_word = {8'd0, VERSION_MAJOR_RESET, VERSION_MINOR_RESET, VERSION_PATCH_RESET};
     ADDRESS_PARAMETERS: f_word = PARAMETERS;
+    ADDRESS_CLOCK: f_word = CLOCK_HZ;
+    ADDRESS_BUILD: f_word = BUILD;
     ADDRESS_RUN: f_word = {13'd0, status_channel, f_wait_sync, f_run};
     default: f_word = 32'd0;
   endcase
@@ -62,5 +64,5 @@ always @(posedge clk)
 always @(posedge clk)
   if (f_ran) begin
     assert (is_run == ($past(bus_address) == ADDRESS_RUN));
-    assert (known == ($past(bus_address) <= ADDRESS_REFUSALS_1));
+    assert (known == ($past(bus_address) <= ADDRESS_BUILD));
   end
