@@ -70,8 +70,7 @@ class Cncjs:
             time.sleep(0.02)
 
     def until_state(self, name: str) -> None:
-        """Wait for a state of the machine that is reported from now on."""
-        self.last.pop("controller:state", None)
+        """Wait for a state of the machine, as last reported; cncjs tells only changes."""
         self.until(lambda: self.status.get("activeState") == name)
 
     def rest(self) -> list[float]:
