@@ -62,6 +62,12 @@ def test_a_serial_line_has_no_batches() -> None:
         judge([f"< 1 {IDLE}", "> 2 7e21", *after], serial=True)
 
 
+@pytest.mark.parametrize("order", [("> 2 21", "< 3 ALARM:3"), ("< 2 ALARM:3", "> 3 21")])
+def test_an_alarm_is_not_held(order: tuple[str, ...]) -> None:
+    """Whether the hold came before it or after; the last report said Idle."""
+    judge([f"< 1 {IDLE}", *order, f"> 250 {b'$X'.hex()}0a", "< 251 ok", f"< 300 {IDLE}", "> 1000 18"])
+
+
 def test_histories_shrink() -> None:
     """To what is needed for the failure."""
     short = shrink(["begin", *"abcdefgh"], lambda tried: "c" in tried and "g" in tried)

@@ -106,6 +106,8 @@ class Judge:
         if text.startswith("Grbl"):
             self.pending, self.part, self.last, self.holds = [], "", 0, -1
             self.state, self.rests = "", -1
+        elif text.startswith("ALARM"):  # nothing is held from here on, whatever was reported before
+            self.state, self.rests, self.holds = "", -1, -1
         elif ANSWER.fullmatch(text):
             self._answer(ms, text)
         elif text.startswith("<"):
