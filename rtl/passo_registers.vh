@@ -689,7 +689,7 @@ localparam ENCODER_RATIO_BITS    = 32;
 localparam ENCODER_RATIO_RESET   = 32'h00010000;
 localparam ENCODER_RATIO_DEFINED = 32'hFFFFFFFF;
 
-// Encoder: Following error limit. Following error at which the axis is exceeded.
+// Encoder: Following error limit. Following error at which the limit is exceeded.
 localparam ENCODER_LIMIT         = 3'h2;
 localparam ENCODER_LIMIT_LSB     = 0;
 localparam ENCODER_LIMIT_BITS    = 16;

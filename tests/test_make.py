@@ -102,6 +102,9 @@ def test_the_firmware_takes_them(tmp_path: Path) -> None:
         assert f":{HZ}:0]" in board.line("$I")
 
 
+MORE = "".join(
+    f'[[axis]]\nname = "{name}"\nsteps_per_mm = 80\nspeed = 10\nacceleration = 100\n' for name in "AB"
+)
 WRONG = [
     ("board =", "bord =", "unknown key 'bord'; did you mean board?"),
     ('"hx8k"', '"hx8"', "board must be one of .*, not 'hx8'; did you mean hx8k?"),
@@ -141,6 +144,7 @@ WRONG = [
     ("[[axis]]", "[[axs]]", "unknown key 'axs'; did you mean axis?"),
     ("spindle_maximum = 24000", "spindle_maximum = 0", "spindle_maximum must be 1 to"),
     ("[switches]", "[switches", "Expected"),
+    (TEXT, TEXT + MORE, "axes: 5 requested, but the table has pins for 4"),
 ]
 
 
@@ -156,14 +160,3 @@ def test_wrong_files(
     told = capsys.readouterr().err
     assert told.startswith(f"{path}: ") and told.count("\n") == 1 and re.search(said, told)
     assert not (tmp_path / "out").exists()
-
-
-def test_too_many_axes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """For the board."""
-    more = "".join(
-        f'[[axis]]\nname = "{name}"\nsteps_per_mm = 80\nspeed = 10\nacceleration = 100\n' for name in "AB"
-    )
-    path = tmp_path / "five.toml"
-    path.write_text(TEXT + more)
-    assert main(["make", str(path), "--out", str(tmp_path / "out")]) == 2
-    assert "axes: 5 requested, but the table has pins for 4" in capsys.readouterr().err

@@ -690,7 +690,7 @@
 #define PASSO_ENCODER_RATIO_RESET   0x00010000u
 #define PASSO_ENCODER_RATIO_DEFINED 0xFFFFFFFFu
 
-/* Encoder: Following error limit. Following error at which the axis is exceeded. */
+/* Encoder: Following error limit. Following error at which the limit is exceeded. */
 #define PASSO_ENCODER_LIMIT         0x2u
 #define PASSO_ENCODER_LIMIT_LSB     0u
 #define PASSO_ENCODER_LIMIT_BITS    16u

@@ -1096,7 +1096,7 @@ ENCODER_RATIO_BITS = 32
 ENCODER_RATIO_RESET = 0x00010000
 ENCODER_RATIO_DEFINED = 0xFFFFFFFF
 
-# Encoder: Following error limit. Following error at which the axis is exceeded.
+# Encoder: Following error limit. Following error at which the limit is exceeded.
 ENCODER_LIMIT = 0x2
 ENCODER_LIMIT_LSB = 0
 ENCODER_LIMIT_BITS = 16

@@ -171,6 +171,13 @@ def _fresh(folder: Path) -> None:
     folder.mkdir(parents=True)
 
 
+def copy(proof: Proof, folder: Path) -> None:
+    """Copy the sources of a proof to a new folder, under the names that it has for them."""
+    _fresh(folder)
+    for name, file in proof.copies.items():
+        shutil.copy(file, folder / name)
+
+
 def _run(
     command: Sequence[str], folder: Path, log: Path, enough: Callable[[str], bool] = lambda _: False
 ) -> tuple[int, str, float]:
@@ -231,9 +238,7 @@ def fail(proof: Proof) -> Result:
     fault; in the next clock the promise is broken. The unmodified RTL cannot do that.
     """
     folder = BUILD / f"{proof.name}.faults"
-    _fresh(folder)
-    for name, file in proof.copies.items():
-        shutil.copy(file, folder / name)
+    copy(proof, folder)
     script = [
         *proof.commands,
         "setundef -undriven -anyseq",

@@ -43,10 +43,9 @@ def two_copies(problem: str, number: int) -> str:
     defined = [found.groups() for line in lines if (found := _DEFINED.match(line))]
     module = re.search(r"^; yosys-smt2-module (\S+)", problem, re.M)
     assert module
-    select = next(name for name, body in defined if name == f"|{module[1]}_n {SELECT}|")
-    source = next(name for name, body in defined if name == select)
+    select = f"|{module[1]}_n {SELECT}|"
     width = f"(_ BitVec {WIDTH})"
-    chosen = next(_OF_STATE.findall(body)[0] for name, body in defined if name == source)
+    chosen = next(_OF_STATE.findall(body)[0] for name, body in defined if name == select)
     made = [f"(declare-fun {name} () {kind})" for name, kind in inputs if name != chosen]
     for copy, value in (("a", 0), ("b", number)):
         made.append(f"(define-fun {chosen[:-1]}_{copy}| () {width} #b{value:0{WIDTH}b})")

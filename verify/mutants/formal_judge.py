@@ -27,7 +27,7 @@ from passo.toolchain import environment
 from verify.formal import run as formal
 from verify.mutants.cells import Cells, cells_by_place
 from verify.mutants.fates import BUILD, Fates, hash_of
-from verify.mutants.netlist import SELECT, WIDTH, Core, Mutant, selected, yosys
+from verify.mutants.netlist import SELECT, WIDTH, Core, Mutant, file_of, selected, yosys
 
 LIMIT = 8  # seconds of the processor; a proof that takes longer says nothing
 PREPARES = 200.0  # seconds of yosys
@@ -49,13 +49,6 @@ def proofs_of(module: str) -> tuple[formal.Proof, ...]:
     return tuple(sorted(found, key=lambda proof: (proof.slow, f"passo_{proof.name}" != module)))
 
 
-def _copy(proof: formal.Proof, folder: Path) -> None:
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
-    for name, file in proof.copies.items():
-        shutil.copy(file, folder / name)
-
-
 def _parts(proof: formal.Proof) -> tuple[list[str], list[str]]:
     """The commands of the proof until its modules have their parameters, and those that follow."""
     lines = proof.commands
@@ -75,7 +68,7 @@ Widths = dict[str, dict[str, int]]  # of the ports of cells
 def _proof_modules(proof: formal.Proof) -> dict[str, tuple[Cells, Widths]]:
     """The cells of the modules of a proof."""
     folder = WORK / f"cells_{os.getpid()}_{proof.name}"
-    _copy(proof, folder)
+    formal.copy(proof, folder)
     yosys(folder, "\n".join([*_parts(proof)[0], "write_json cells.json"]) + "\n")
     modules = json.loads((folder / "cells.json").read_text())["modules"]
     shutil.rmtree(folder)
@@ -115,7 +108,7 @@ def _in_proof(core: Core, mutant: Mutant, proof: formal.Proof) -> list[str]:
     names = cells_of[key]
     commands = []
     for name, (cells, widths) in _proof_modules(proof).items():
-        if re.sub(r"^\$paramod(?:\$[0-9a-f]+)?\\", "", name).split("\\")[0] != mutant.module:
+        if file_of(name) != mutant.module:
             continue
         same = cells.get(key, [])
         if len(same) != len(names):
@@ -142,7 +135,7 @@ class Problem:
         identity = self.folder / "hash"
         hashed = hash_of(proof.copies.values(), script)
         if self.numbers and not (identity.exists() and identity.read_text() == hashed):
-            _copy(proof, self.folder)
+            formal.copy(proof, self.folder)
             yosys(self.folder, script, PREPARES)
             identity.write_text(hashed)
 

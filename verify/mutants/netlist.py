@@ -182,7 +182,7 @@ def read(core: Core, folder: Path) -> str:
     return f"read_verilog -I. {files}\nhierarchy -top {core.top} {chosen}\nproc\nmemory_collect\nopt_clean\n"
 
 
-def _file(module: str) -> str:
+def file_of(module: str) -> str:
     """The module of rtl/ from which yosys has made one for some parameters."""
     return re.sub(r"^\$paramod(?:\$[0-9a-f]+)?\\", "", module).split("\\")[0]
 
@@ -214,7 +214,7 @@ def draw(core: Core, seed: int, each: int) -> list[Mutant]:
     all_modules = json.loads((core.folder / "core.json").read_text())["modules"]
     files: dict[str, list[str]] = {}
     for name in sorted(all_modules):
-        file = _file(name)
+        file = file_of(name)
         if not ((core.modules and file not in core.modules) or file in core.without):
             files.setdefault(file, []).append(name)
     drawn_from = [name for names in files.values() for name in names]
