@@ -118,8 +118,15 @@ def test_a_height_map(sender: Cncjs) -> None:
 
 
 def test_tool_length(sender: Cncjs) -> None:
-    """As its tool change does it: probe, wait, take the length from the position, and read the parameters."""
-    sender.send("G91 G38.2 Z-15 F600", "G90", "%wait", "G43.1 Z[posz + 1.5]", "$#")
+    """As its tool change does it: probe, wait, take the length from the position, and read the parameters.
+
+    cncjs knows the position as last reported, four times a second; on a busy machine the dwell of its
+    `%wait` may pass between two reports.
+    """
+    sender.send("G91 G38.2 Z-15 F600", "G90", "%wait")
+    sender.until_said("[PRB:")
+    sender.rest()
+    sender.send("G43.1 Z[posz + 1.5]", "$#")
     told = sender.until_said("[TLO:")
     length = float(told[5:-1])
     sender.until(lambda: sender.position[2] + 1.5 == pytest.approx(length))
