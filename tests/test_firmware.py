@@ -181,13 +181,13 @@ def test_nonsense_is_refused_and_nothing_happens() -> None:
 
 @pytest.mark.parametrize("burst", [4, 30])
 def test_line_that_lost_characters_is_refused(burst: int) -> None:
-    """USART overrun: characters come faster than the interrupt takes them. The line, although it still makes
-    sense without them, is not executed."""
+    """Noise on the serial line. The line, although it still makes sense without the damaged characters, is not
+    executed."""
     board = model_board()
     line, rest = "move steps=", "100,-50 profile=linear total_time=0.01 ramp_time=0.002"
     since = len(board.output)
     board.type(line)
-    board.type("0" * burst, baud=150_000_000)
+    board.type("0" * burst, damaged=True)
     board.type(rest + "\r")
     board.run_until(lambda: board.output[since:].endswith("\n"), 1.0)
     assert board.output[since:].startswith("error:")

@@ -110,6 +110,7 @@ bool board_start(void)
 	EXTI->rtsr = BIT(CORE_PIN);
 	EXTI->imr = BIT(CORE_PIN);
 	nvic_enable(IRQ_EXTI0, PRIORITY_CORE);
+	nvic_enable(IRQ_DMA1_CHANNEL5, PRIORITY_SERIAL);
 	nvic_enable(IRQ_USART1, PRIORITY_SERIAL);
 
 	SCB_SHPR3_SYSTICK = PRIORITY_TICK << 4;

@@ -49,6 +49,7 @@ void board_sleep(void);
 
 void systick_handler(void);
 void exti0_handler(void);
+void dma1_channel5_handler(void);
 void usart1_handler(void);
 
 #endif

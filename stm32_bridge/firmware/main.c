@@ -2,7 +2,6 @@
  * Main loop: passes serial input to the console, polls the core and feeds the watchdog.
  */
 #include "board.h"
-#include "input.h"
 #include "passo_console.h"
 #include "spi.h"
 #include "uart.h"
@@ -28,7 +27,7 @@ static void wait(void *context, uint32_t duration)
 static uint32_t lost_bytes(void *context)
 {
 	(void)context;
-	return input_losses();
+	return uart_losses();
 }
 
 static void set_baud(void *context, uint32_t baud)
@@ -80,7 +79,7 @@ int main(void)
 		char byte;
 		unsigned bytes = 0;
 
-		while (bytes < BYTES_PER_ROUND && input_read(&byte)) {
+		while (bytes < BYTES_PER_ROUND && uart_read(&byte)) {
 			passo_console_receive(&console, byte);
 			bytes++;
 			if (byte == '\r' || byte == '\n')

@@ -57,5 +57,6 @@ __attribute__((section(".vectors"), used)) static const uintptr_t vectors[16u + 
     [14] = FAULT, /* pendable service */
     (uintptr_t)systick_handler,
     [16u + IRQ_EXTI0] = (uintptr_t)exti0_handler,
+    [16u + IRQ_DMA1_CHANNEL5] = (uintptr_t)dma1_channel5_handler,
     [16u + IRQ_USART1] = (uintptr_t)usart1_handler,
 };

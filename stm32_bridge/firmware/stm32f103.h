@@ -95,7 +95,9 @@ struct dma {
 };
 #define DMA1 ((struct dma *)0x40020000u)
 #define DMA_CCR_EN BIT(0)
+#define DMA_CCR_TCIE BIT(1)
 #define DMA_CCR_FROM_MEMORY BIT(4)
+#define DMA_CCR_CIRCULAR BIT(5)
 #define DMA_CCR_MINC BIT(7)
 #define DMA_CCR_PSIZE_16 (1u << 8)
 #define DMA_CCR_MSIZE_16 (1u << 10)
@@ -139,9 +141,10 @@ struct usart {
 #define USART_SR_TXE BIT(7)
 #define USART_CR1_RE BIT(2)
 #define USART_CR1_TE BIT(3)
-#define USART_CR1_RXNEIE BIT(5)
 #define USART_CR1_TXEIE BIT(7)
 #define USART_CR1_UE BIT(13)
+#define USART_CR3_EIE BIT(0)
+#define USART_CR3_DMAR BIT(6)
 
 struct iwdg {
 	volatile uint32_t kr, pr, rlr, sr;
@@ -168,6 +171,7 @@ struct systick {
 #define NVIC_ISER ((volatile uint32_t *)0xE000E100u)
 #define NVIC_IPR ((volatile uint8_t *)0xE000E400u)
 #define IRQ_EXTI0 6u
+#define IRQ_DMA1_CHANNEL5 15u
 #define IRQ_USART1 37u
 #define IRQ_COUNT 43u /* of the medium-density devices */
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * USART1 (TX PA9, RX PA10, 8N1) with interrupts, and a ring buffer for sending.
+ * USART1 (TX PA9, RX PA10, 8N1): interrupts and a ring buffer send, DMA receives.
  */
 #ifndef UART_H
 #define UART_H
@@ -20,9 +20,12 @@ void uart_write(const char *text);
 /* Bytes that can be queued without waiting. */
 uint32_t uart_room(void);
 
-/* What the program does with a received byte, in the interrupt; and with one that was lost or corrupt (noise,
- * framing error, overrun of the receiver). */
-void uart_received(char byte);
-void uart_lost(void);
+/* Gets the next received byte; false if there is none. UART_LOST stands for bytes that were lost, because too
+ * many had not been read, or corrupt (noise, framing error). */
+#define UART_LOST '\0'
+bool uart_read(char *byte);
+
+/* Number of lost and corrupt bytes since start; wraps. */
+uint32_t uart_losses(void);
 
 #endif

@@ -61,9 +61,9 @@ class Machine(Chip):
                 f"timeout: no output for {seconds} s; the terminal shows ...{self.output[-200:]!r}"
             )
 
-    def type(self, text: str, baud: int | None = None) -> None:
-        """Send characters from the terminal at its baud rate."""
-        self.usart.type(text.encode("latin-1"), baud or self.baud, self.now)
+    def type(self, text: str, baud: int | None = None, *, damaged: bool = False) -> None:
+        """Send characters from the terminal at its baud rate; damaged ones arrive with a framing error."""
+        self.usart.type(text.encode("latin-1"), baud or self.baud, self.now, damaged=damaged)
         self._next_due = self.now
 
     def expect(self, text: str, seconds: float, since: int = 0) -> None:

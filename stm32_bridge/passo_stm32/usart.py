@@ -8,7 +8,7 @@ from passo_stm32.bus import NEVER, TICKS_PER_SECOND, MachineError, Peripheral, R
 INTERRUPT, TRANSMIT_CHANNEL, RECEIVE_CHANNEL = 37, 4, 5
 FRAMING, OVERRUN, RECEIVED, COMPLETE, EMPTY = 1, 3, 5, 6, 7
 RECEIVER, TRANSMITTER, ENABLE = 2, 3, 13
-RECEIVE_DMA, TRANSMIT_DMA = 6, 7
+ERROR_INTERRUPT, RECEIVE_DMA, TRANSMIT_DMA = 0, 6, 7
 BITS = 10  # of a character, with start and stop bit
 TOLERANCE = 0.04  # largest relative difference between the baud rates
 
@@ -31,18 +31,18 @@ class Usart(Peripheral):
     def reset(self) -> None:
         """Disable. Characters that the terminal has still to send are kept."""
         super().reset()
-        self._incoming: deque[tuple[int, int]] = getattr(self, "_incoming", deque())  # end, character
+        self._incoming: deque[tuple[int, int, bool]] = getattr(self, "_incoming", deque())  # end, character, damaged
         self._sending: int | None = None
         self._sent_at = NEVER
         self._waiting = self._received = 0
         self._status_read = 0
         self._schedule()
 
-    def type(self, text: bytes, baud: int, now: int) -> None:
-        """Let the terminal send characters."""
-        at = max([now, *(end for end, _ in list(self._incoming)[-1:])])
+    def type(self, text: bytes, baud: int, now: int, *, damaged: bool = False) -> None:
+        """Let the terminal send characters; damaged ones arrive with a framing error."""
+        at = max([now, *(end for end, *_ in list(self._incoming)[-1:])])
         for i, character in enumerate(text, 1):
-            self._incoming.append((at + i * BITS * TICKS_PER_SECOND // baud, character))
+            self._incoming.append((at + i * BITS * TICKS_PER_SECOND // baud, character, damaged))
         self._schedule()
 
     @property
@@ -72,17 +72,18 @@ class Usart(Peripheral):
             else:
                 self.set_bit("SR", COMPLETE, True)
         while self._incoming and self._incoming[0][0] <= now:
-            self._take(self._incoming.popleft()[1])
+            self._take(*self._incoming.popleft()[1:])
+            self._requests()
         self._requests()
         self._schedule()
 
-    def _take(self, character: int) -> None:
+    def _take(self, character: int, damaged: bool) -> None:
         if not self.bit("CR1", ENABLE) or not self.bit("CR1", RECEIVER):
             return
         if self.bit("SR", RECEIVED):
             self.set_bit("SR", OVERRUN, True)
             return
-        matches = self._matches()
+        matches = self._matches() and not damaged
         self._received = character if matches else character ^ 0xE6
         self.set_bit("SR", FRAMING, not matches)
         self.set_bit("SR", RECEIVED, True)
@@ -157,4 +158,6 @@ class Usart(Peripheral):
         status, enabled = self.value["SR"], self.value["CR1"]
         wanted = status & enabled & (1 << RECEIVED | 1 << COMPLETE | 1 << EMPTY)
         overrun = status >> OVERRUN & enabled >> RECEIVED & 1
-        self.machine.exceptions.set_line(INTERRUPT, wanted or overrun)
+        by_dma = self.bit("CR3", ERROR_INTERRUPT) & self.bit("CR3", RECEIVE_DMA)
+        error = by_dma & (status >> FRAMING | status >> OVERRUN) & 1
+        self.machine.exceptions.set_line(INTERRUPT, wanted or overrun or error)

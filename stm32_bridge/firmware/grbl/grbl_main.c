@@ -50,29 +50,22 @@ static const struct passo_hardware hardware = {.transfer = spi_transfer,
     .finish = spi_finish,
     .spare = spare};
 
-static volatile bool asked; /* for a status report */
-
-void uart_received(char byte)
-{
-	if (byte == '?')
-		asked = true;
-	else
-		passo_grbl_receive(&grbl, byte);
-}
-
 /* Reports faster than the line can take them become one: waiting for it would starve the core. */
-static void pass_on_question(void)
+static void receive(void)
 {
-	if (!asked || uart_room() < REPORT_BYTES)
-		return;
-	asked = false;
-	passo_grbl_receive(&grbl, '?');
-}
+	static bool asked; /* for a status report */
+	char byte;
 
-/* The line is refused. */
-void uart_lost(void)
-{
-	passo_grbl_receive(&grbl, '\0');
+	while (uart_read(&byte)) {
+		if (byte == '?')
+			asked = true;
+		else
+			passo_grbl_receive(&grbl, byte); /* UART_LOST: the line is refused */
+	}
+	if (asked && uart_room() >= REPORT_BYTES) {
+		asked = false;
+		passo_grbl_receive(&grbl, '?');
+	}
 }
 
 static void say(const char *text)
@@ -139,9 +132,14 @@ static void connect(void)
 	}
 }
 
+/* Lines that came while there was no core are dropped, as before a reset. */
 static void start(void)
 {
+	char byte;
+
 	connect();
+	while (uart_read(&byte))
+		continue;
 	path.items = items;
 	path.capacity = LOOK_AHEAD;
 	grbl_machine(&setup, &passo, &flash_pages);
@@ -171,7 +169,7 @@ int main(void)
 		while (!host.lost) {
 			const uint32_t before = progress();
 
-			pass_on_question();
+			receive();
 			passo_grbl_poll(&grbl);
 			board_led(passo_fault(&passo) != PASSO_OK);
 			board_watchdog_feed();
