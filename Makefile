@@ -77,12 +77,13 @@ endif
 	@$(BIN)/ruff check --fix $(PYTHON_DIRS)
 	@$(BIN)/ruff format $(PYTHON_DIRS)
 
-generate: setup ## Regenerate the generated files: registers, pins, move forms, shape tables, file lists.
+generate: setup ## Regenerate the generated files: registers, pins, move forms, shape tables, file lists, pages.
 	@$(BIN)/python spec/generate_registers.py
 	@$(BIN)/python spec/generate_pins.py
 	@$(BIN)/python spec/generate_moves.py
 	@$(BIN)/python spec/generate_shapes.py
 	@$(BIN)/python spec/generate_package.py
+	@$(BIN)/python spec/generate_gcode.py
 	@$(BIN)/python -m verify.formal.page
 	@$(BIN)/python -m verify.page
 

@@ -28,7 +28,6 @@ class Passo:
         self.gcode.execute(line)
         self.label += 1
         c = planner()
-        tolerance = self.tolerance()
         arc = self.gcode.c.job.arc if self.gcode.c.job.turns else None
         for action in self.gcode.actions():
             if action.kind == c.PASSO_GCODE_DWELL:
@@ -38,18 +37,13 @@ class Passo:
                         self.label,
                         dwell=seconds,
                         outputs=_outputs(action.output),
-                        tolerance=tolerance,
+                        tolerance=_tolerance(action),
                     )
                 )
             elif action.kind == c.PASSO_GCODE_LINE and arc is None:
                 self.motions.append(self._motion(action, None))
         if arc is not None:
             self.motions.append(self._motion(action, arc))
-
-    def tolerance(self) -> float:
-        """Of merged lines, in mm; 0: none, or the path's own."""
-        unmerged = (1 << 64) - 1
-        return self.gcode.c.tolerance % unmerged / 2**32
 
     def _motion(self, action: Any, arc: Any) -> Motion:
         feed = 0 if action.feed == (1 << 64) - 1 else action.feed / 2**32 * 60
@@ -59,13 +53,19 @@ class Passo:
             end or tuple(n / NANOMETERS for n in action.target[0:3]),
             feed,
             outputs=_outputs(action.output),
-            tolerance=self.tolerance(),
+            tolerance=_tolerance(action),
         )
         if arc is None:
             return made
         plane = next(axes for axes in PLANES.values() if axes[0] == arc.plane.first)
         center = (arc.center.x / NANOMETERS, arc.center.y / NANOMETERS)
         return replace(made, center=center, plane=plane, clockwise=bool(arc.clockwise))
+
+
+def _tolerance(action: Any) -> float:
+    """Of merged lines, in mm; 0: none, or the path's own."""
+    unmerged = (1 << 64) - 1
+    return action.tolerance % unmerged / 2**32
 
 
 def _outputs(word: int) -> Outputs:

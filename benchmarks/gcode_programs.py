@@ -13,8 +13,11 @@ from benchmarks.gcode_passo import Passo
 from benchmarks.gcode_rs274 import LOWEST
 
 LINES = 40
+# What changes the meaning of the words that a cycle in force has kept, or where its row began.
+SHIFTS = {"G10", "G17", "G18", "G19", "G20", "G21", "G28", "G30", "G43.1", "G49", "G54", "G55", "G59",
+          "G61", "G61.1", "G64", "G90", "G91", "G92", "G92.1"}  # fmt: skip
 PLANES = {"G17": "XYZ", "G18": "ZXY", "G19": "YZX"}
-MOTION, PLANE, UNITS, DISTANCE, FEED_MODE = 0, 2, 3, 4, 5  # enum passo_gcode_group
+MOTION, PLANE, UNITS, DISTANCE, FEED_MODE, PATH = 0, 2, 3, 4, 5, 6  # enum passo_gcode_group
 
 
 def number(rng: random.Random, low: float, high: float) -> str:
@@ -46,7 +49,7 @@ class Programs:
         self.rng, self.passo = rng, Passo()
         self.makers: list[tuple[Callable[[], str], int]] = [
             (self.straight, 30), (self.arc, 14), (self.radius, 8), (self.modes, 14), (self.offsets, 10),
-            (self.homes, 4), (self.others, 8), (self.nonsense, 3),
+            (self.homes, 4), (self.others, 8), (self.cycle, 10), (self.nonsense, 3),
         ]  # fmt: skip
 
     def line(self) -> str:
@@ -107,7 +110,8 @@ class Programs:
         if rng.random() < 0.05:  # of tolerances in between there is a row in the table
             apart = 1 + rng.choice((0.0001, 0.5, 2)) / true
             place = [start[i] + offset[i] + (place[i] - start[i] - offset[i]) * apart for i in range(2)]
-        words = [f"{letter}{at:.6f}" for letter, at in zip(letters, place, strict=False)]
+        closed = place == start[:2] and rng.random() < 0.5
+        words = [] if closed else [f"{letter}{at:.6f}" for letter, at in zip(letters, place, strict=False)]
         words += [f"{'IJK'['XYZ'.index(letter)]}{o:.4f}" for letter, o in zip(letters, offset, strict=False)]
         if rng.random() < 0.3:
             words.append(f"{letters[2]}{start[2] + rng.uniform(-5, 5):.3f}")
@@ -124,13 +128,32 @@ class Programs:
             words.append(f"{letters[2]}{start[2] + rng.uniform(-5, 5):.3f}")
         return f"{command} {' '.join(words)} R{size * rng.choice((1, 1, -1)):.4f}{self.feed()}"
 
+    def cycle(self) -> str:
+        """Holes: one, a row, or one more of the cycle in force."""
+        rng, gcode = self.rng, self.passo.gcode.c
+        letters = PLANES[f"G{gcode.mode[PLANE] // 10}"]
+        places = axes(rng, letters[:2], least=1)
+        if is_cycle(gcode.mode[MOTION]):
+            return places
+        if gcode.mode[PATH] != 610:  # rs274 leaves the path mode of cycles alone only then
+            return "G61"
+        incremental, high = gcode.mode[DISTANCE] == 910, self.place("XYZ".index(letters[2]))
+        level = rng.uniform(-9, 3) + (0 if incremental else high)
+        bottom = (0 if incremental else level) - rng.uniform(0.5, 9)
+        kind = rng.choice(("G73", "G81", "G82", "G83", "G85", "G89"))
+        words = [kind, places, f"{letters[2]}{bottom:.3f}", f"R{level:.3f}", f"F{positive(rng, 3000)}"]
+        words += [f"Q{rng.uniform(0.3, 5):.3f}"] if kind in ("G73", "G83") else []
+        words += [f"P{positive(rng, 2)}"] if kind in ("G82", "G89") else []
+        words += [f"L{rng.randint(1, 3)}"] if rng.random() < 0.3 else []
+        return " ".join([*words, rng.choice(("G98", "G99"))])
+
     def modes(self) -> str:
         """One or two modes, sometimes with a motion."""
         rng = self.rng
         groups = (
             ("G17", "G18", "G19"), ("G20", "G21"), ("G90", "G91"), ("G93", "G94", "G94"),
             ("G54", "G55", "G59"),
-            ("G61", "G64", "G64 P0.05", "G64 P0.1 Q0.02"), ("G40",), ("G91.1",), ("G80",),
+            ("G61", "G61.1", "G64", "G64 P0.05", "G64 P0.1 Q0.02"), ("G40",), ("G91.1",), ("G80",),
             ("M3", "M4", "M5"), ("M7", "M8", "M9"), (f"S{positive(rng, 900)}",),
         )  # fmt: skip
         chosen = [rng.choice(group) for group in rng.sample(groups, rng.choice((1, 1, 2)))]
@@ -163,8 +186,8 @@ class Programs:
     def nonsense(self) -> str:
         """Words that do not go together, mostly."""
         rng = self.rng
-        words = ("G0", "G1", "G2", "G3", "G4", "G10", "G28", "G53", "G80", "G92", "G93", "G17", "M3",
-                 "X1", "Y2", "Z3", "I1", "J2", "K3", "R4", "P1", "L2", "F5", "S6", "Q1", "H1",
+        words = ("G0", "G1", "G2", "G3", "G4", "G10", "G28", "G53", "G80", "G92", "G93", "G17", "M3", "G81",
+                 "G99", "X1", "Y2", "Z3", "I1", "J2", "K3", "R4", "P1", "L2", "F5", "S6", "Q1", "H1",
                  "X", "X1.2.3", "F-1", "G1.5", "G38", "E1")  # fmt: skip
         return " ".join(rng.sample(words, rng.randint(1, 4)))
 
@@ -174,25 +197,23 @@ def words_of(line: str) -> set[str]:
     return set(re.findall(r"[A-Z][-+.0-9]*", re.sub(r"\(.*?\)|;.*", "", line).upper().replace(" ", "")))
 
 
-def is_arc(words: set[str], motion: int) -> bool:
-    """Whether the motion of a line, given or in force, is an arc."""
-    given = words & {"G0", "G00", "G1", "G01", "G2", "G02", "G3", "G03", "G80", "G38"}
-    return bool(given & {"G2", "G02", "G3", "G03"}) if given else motion in (20, 30)
+def is_cycle(motion: int) -> bool:
+    """Whether a motion is a drilling cycle."""
+    return motion == 730 or motion > 800
 
 
 def known(line: str, passo: Passo) -> bool:
-    """Whether the table of differences in docs/gcode.md has such lines."""
+    """Whether spec/gcode_differences.toml has such lines."""
     words, gcode = words_of(line), passo.gcode.c
     letters = {word[0] for word in words}
     units, incremental = words & {"G20", "G21"}, gcode.mode[DISTANCE] == 910
-    turning = PLANES[next((given for given in PLANES if given in words), f"G{gcode.mode[PLANE] // 10}")]
     others = words & {"G10", "G28", "G30", "G92", "G43.1"} and letters & set("XYZ")
     return bool(
         ("G94" in words and "F" not in letters)
         or (units and ("F" in letters or gcode.tool_length != 0))
         or ("G53" in words and ("G91" in words or incremental or not letters & set("XYZ")))
         or (others and gcode.mode[MOTION] == 800)
-        or (is_arc(words, gcode.mode[MOTION]) and letters & set("IJKR") and not letters & set(turning[:2]))
+        or (words & SHIFTS and is_cycle(gcode.mode[MOTION]))
     )
 
 

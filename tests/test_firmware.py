@@ -181,8 +181,8 @@ def test_nonsense_is_refused_and_nothing_happens() -> None:
 
 @pytest.mark.parametrize("burst", [4, 30])
 def test_line_that_lost_characters_is_refused(burst: int) -> None:
-    """Noise on the serial line. The line, although it still makes sense without the damaged characters, is not
-    executed."""
+    """Noise on the serial line: the line is not executed, although it still makes sense without what was
+    damaged."""
     board = model_board()
     line, rest = "move steps=", "100,-50 profile=linear total_time=0.01 ramp_time=0.002"
     since = len(board.output)

@@ -17,6 +17,7 @@ const passo_gcode_command PASSO_GCODE_POWER_UP[PASSO_GCODE_MODES] = {
     [PASSO_GCODE_CUTTER] = 400,
     [PASSO_GCODE_ARC_DISTANCE] = 911,
     [PASSO_GCODE_SPINDLE] = 50,
+    [PASSO_GCODE_RETRACT] = 980,
 };
 
 void passo_gcode_copy(const struct passo_gcode *gcode, const int64_t *from, int64_t *to)
@@ -30,7 +31,7 @@ static void clear_job(struct passo_gcode *gcode)
 	struct passo_gcode_job *job = &gcode->job;
 
 	job->output = job->dwell = job->offsets = job->via = job->motion = job->pause = job->end = false;
-	job->turns = false;
+	job->turns = job->drills = false;
 	job->probe = PASSO_GCODE_NONE;
 }
 
@@ -121,6 +122,7 @@ static void accept(struct passo_gcode *gcode, const struct passo_gcode_check *ch
 		gcode->spindle = block->value['S' - 'A'];
 	gcode->feed = check->feed;
 	gcode->tolerance = check->tolerance;
+	gcode->drill = check->drill;
 	for (unsigned group = 0; group < PASSO_GCODE_MODES; group++)
 		gcode->mode[group] = check->mode[group];
 	accept_coolant(gcode, block->command[PASSO_GCODE_COOLANT]);
@@ -144,6 +146,7 @@ static enum passo_gcode_error begin(
 	check->moves = false;
 	check->feed = check->inverse = 0;
 	check->tolerance = 0;
+	check->drill = gcode->drill;
 	check->system = 0;
 	check->axis_words = check->block.words & passo_gcode_axis_words(gcode->settings.axes);
 	for (unsigned group = 0; group < PASSO_GCODE_MODES; group++) {

@@ -15,6 +15,7 @@
 
 #include "passo_gcode_arc.h"
 #include "passo_gcode_block.h"
+#include "passo_gcode_cycle.h"
 #include "passo_path.h"
 
 #define PASSO_GCODE_SYSTEMS 6u /* G54 .. G59 */
@@ -56,6 +57,8 @@ struct passo_gcode_action {
 	enum passo_gcode_kind kind;
 	passo_gcode_position target; /* machine coordinates */
 	uint64_t feed;               /* UQ32.32 mm/s, or PASSO_PATH_RAPID */
+	uint64_t tolerance;          /* for passo_path_tolerance(), before the line is added */
+	bool stops;                  /* at the end of the line */
 	uint64_t microseconds;       /* of a dwell */
 	uint32_t output;
 	uint32_t line; /* N; 0: none */
@@ -66,11 +69,15 @@ struct passo_gcode_action {
 struct passo_gcode_job {
 	bool output, dwell, offsets, via, motion, pause, end; /* in this order */
 	bool turns;                                           /* the motion is an arc */
+	bool drills;                                          /* the motion is a cycle */
 	passo_gcode_command probe; /* the motion is a probe; else PASSO_GCODE_NONE */
 	uint64_t microseconds;
 	uint64_t feed;                              /* UQ32.32 mm/s, or PASSO_PATH_RAPID */
 	passo_gcode_position stopover, destination; /* machine coordinates */
-	struct passo_gcode_arc arc;
+	union {
+		struct passo_gcode_arc arc;     /* if it turns */
+		struct passo_gcode_cycle cycle; /* if it drills */
+	};
 };
 
 /* All members except spindle_percent are read-only for users. */
@@ -79,13 +86,14 @@ struct passo_gcode {
 	struct passo_gcode_offsets offsets;
 	passo_gcode_command mode[PASSO_GCODE_MODES];
 	bool flood, mist;
-	passo_gcode_position position; /* programmed end, machine coordinates */
-	passo_gcode_position shift;    /* G92 */
-	int64_t tool_length;           /* G43.1 */
-	uint64_t tolerance;            /* G61 G64: for passo_path_tolerance(), before a line is added */
-	int64_t feed;                  /* nm/min; 0: none yet */
-	int64_t spindle;               /* millionths of rpm */
-	uint32_t line;                 /* N of the last line that had one */
+	passo_gcode_position position;  /* programmed end, machine coordinates */
+	passo_gcode_position shift;     /* G92 */
+	int64_t tool_length;            /* G43.1 */
+	struct passo_gcode_drill drill; /* of the cycle in force */
+	uint64_t tolerance;             /* of G61 and G64 */
+	int64_t feed;                   /* nm/min; 0: none yet */
+	int64_t spindle;                /* millionths of rpm */
+	uint32_t line;                  /* N of the last line that had one */
 	uint8_t tool;
 	uint8_t spindle_percent; /* override of S: may be set by the caller, for the following actions */
 	struct passo_gcode_job job;

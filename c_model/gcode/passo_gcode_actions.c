@@ -57,16 +57,39 @@ static bool take(bool *part)
 	return there;
 }
 
-static void next_of_motion(struct passo_gcode *gcode, struct passo_gcode_action *action)
+/* False: no stroke is left. */
+static bool next_of_cycle(struct passo_gcode *gcode, struct passo_gcode_action *action)
+{
+	struct passo_gcode_job *job = &gcode->job;
+	const enum passo_gcode_stroke stroke = passo_gcode_cycle_next(&job->cycle);
+
+	job->motion = stroke != PASSO_GCODE_STROKE_NONE;
+	passo_gcode_copy(gcode, job->cycle.at, action->target);
+	if (stroke == PASSO_GCODE_STROKE_DWELL) {
+		action->kind = PASSO_GCODE_DWELL;
+		action->microseconds = job->cycle.microseconds;
+	} else if (stroke != PASSO_GCODE_STROKE_FEED) {
+		action->feed = PASSO_PATH_RAPID;
+		if (stroke == PASSO_GCODE_STROKE_RAPID_STOPPED)
+			action->output &= PASSO_GCODE_OUTPUT_FLOOD | PASSO_GCODE_OUTPUT_MIST;
+	}
+	return job->motion;
+}
+
+/* False: nothing is left of it. */
+static bool next_of_motion(struct passo_gcode *gcode, struct passo_gcode_action *action)
 {
 	struct passo_gcode_job *job = &gcode->job;
 
 	action->kind = PASSO_GCODE_LINE;
 	action->feed = job->feed;
+	if (job->drills)
+		return next_of_cycle(gcode, action);
 	if (job->turns) {
 		passo_gcode_arc_next(&job->arc, action->target);
 		job->motion = job->arc.done < job->arc.chords;
-		return;
+		action->stops = action->stops && !job->motion;
+		return true;
 	}
 	if (job->probe != PASSO_GCODE_NONE) {
 		action->kind = PASSO_GCODE_PROBE;
@@ -74,6 +97,7 @@ static void next_of_motion(struct passo_gcode *gcode, struct passo_gcode_action 
 	}
 	passo_gcode_copy(gcode, job->destination, action->target);
 	job->motion = false;
+	return true;
 }
 
 bool passo_gcode_next(struct passo_gcode *gcode, struct passo_gcode_action *action)
@@ -82,8 +106,11 @@ bool passo_gcode_next(struct passo_gcode *gcode, struct passo_gcode_action *acti
 
 	if (!passo_gcode_is_busy(gcode))
 		return false;
-	*action = (struct passo_gcode_action){
-	    .line = gcode->line, .output = passo_gcode_output(gcode), .probe = PASSO_GCODE_NONE};
+	*action = (struct passo_gcode_action){.line = gcode->line,
+	    .output = passo_gcode_output(gcode),
+	    .probe = PASSO_GCODE_NONE,
+	    .tolerance = job->drills ? PASSO_PATH_UNMERGED : gcode->tolerance,
+	    .stops = gcode->mode[PASSO_GCODE_PATH] == PASSO_GCODE_G(61, 1)};
 	if (take(&job->output)) {
 		action->kind = PASSO_GCODE_OUTPUT;
 	} else if (take(&job->dwell)) {
@@ -96,7 +123,8 @@ bool passo_gcode_next(struct passo_gcode *gcode, struct passo_gcode_action *acti
 		action->feed = PASSO_PATH_RAPID;
 		passo_gcode_copy(gcode, job->stopover, action->target);
 	} else if (job->motion) {
-		next_of_motion(gcode, action);
+		if (!next_of_motion(gcode, action))
+			return passo_gcode_next(gcode, action);
 	} else if (take(&job->pause)) {
 		action->kind = PASSO_GCODE_PAUSE;
 	} else {

@@ -50,8 +50,16 @@ static const struct code G_CODES[] = {
     {580, PASSO_GCODE_SYSTEM, 0},
     {590, PASSO_GCODE_SYSTEM, 0},
     {610, PASSO_GCODE_PATH, TENTHS},
+    {611, PASSO_GCODE_PATH, TENTHS},
     {640, PASSO_GCODE_PATH, TENTHS},
+    {730, PASSO_GCODE_MOTION, AXIS_WORDS},
     {800, PASSO_GCODE_MOTION, 0},
+    {810, PASSO_GCODE_MOTION, AXIS_WORDS},
+    {820, PASSO_GCODE_MOTION, AXIS_WORDS},
+    {830, PASSO_GCODE_MOTION, AXIS_WORDS},
+    {850, PASSO_GCODE_MOTION, AXIS_WORDS},
+    {860, PASSO_GCODE_MOTION, AXIS_WORDS},
+    {890, PASSO_GCODE_MOTION, AXIS_WORDS},
     {900, PASSO_GCODE_DISTANCE, TENTHS},
     {910, PASSO_GCODE_DISTANCE, TENTHS},
     {911, PASSO_GCODE_ARC_DISTANCE, TENTHS},
@@ -59,6 +67,8 @@ static const struct code G_CODES[] = {
     {921, PASSO_GCODE_COMMAND, TENTHS},
     {930, PASSO_GCODE_FEED_MODE, 0},
     {940, PASSO_GCODE_FEED_MODE, 0},
+    {980, PASSO_GCODE_RETRACT, 0},
+    {990, PASSO_GCODE_RETRACT, 0},
 };
 
 static const struct code M_CODES[] = {
@@ -212,8 +222,5 @@ enum passo_gcode_error passo_gcode_parse(const char *text, unsigned axes, struct
 		else
 			error = add_value(block, known, letter, value);
 	}
-	if (error == PASSO_GCODE_OK && (block->words & PASSO_GCODE_WORD('Q'))
-	    && block->command[PASSO_GCODE_PATH] != 640)
-		return PASSO_GCODE_UNSUPPORTED; /* no other command has it */
 	return error;
 }

@@ -18,17 +18,18 @@
 
 /* Modal groups; at most one command of each in a line. Those before COMMAND are kept from line to line. */
 enum passo_gcode_group {
-	PASSO_GCODE_MOTION,       /* G0 G1 G2 G3 G38.2-5 G80 */
+	PASSO_GCODE_MOTION,       /* G0 G1 G2 G3 G38.2-5 G73 G80-G83 G85 G86 G89 */
 	PASSO_GCODE_SYSTEM,       /* G54-59 */
 	PASSO_GCODE_PLANE,        /* G17-19 */
 	PASSO_GCODE_UNITS,        /* G20 G21 */
 	PASSO_GCODE_DISTANCE,     /* G90 G91 */
 	PASSO_GCODE_FEED_MODE,    /* G93 G94 */
-	PASSO_GCODE_PATH,         /* G61 G64 */
+	PASSO_GCODE_PATH,         /* G61 G61.1 G64 */
 	PASSO_GCODE_TOOL_LENGTH,  /* G43.1 G49 */
 	PASSO_GCODE_CUTTER,       /* G40 */
 	PASSO_GCODE_ARC_DISTANCE, /* G91.1 */
 	PASSO_GCODE_SPINDLE,      /* M3 M4 M5 */
+	PASSO_GCODE_RETRACT,      /* G98 G99 */
 	PASSO_GCODE_COMMAND,      /* G4 G10 G28 G28.1 G30 G30.1 G53 G92 G92.1 */
 	PASSO_GCODE_COOLANT,      /* M7 M8 M9 */
 	PASSO_GCODE_PROGRAM,      /* M0 M1 M2 M30 */

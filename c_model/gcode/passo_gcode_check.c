@@ -54,13 +54,17 @@ bool passo_gcode_in_range(int64_t nanometres)
 	return nanometres <= PASSO_GCODE_COORDINATE_MAX && nanometres >= -PASSO_GCODE_COORDINATE_MAX;
 }
 
-/* Axis words without a command for them are those of the motion in force. */
+/* Axis words without a command for them are those of the motion in force, as are the offsets of an arc. */
 static enum passo_gcode_error find_user(struct passo_gcode_check *check)
 {
 	const passo_gcode_command motion = check->block.command[PASSO_GCODE_MOTION];
+	const uint32_t offsets =
+	    passo_gcode_is_arc(check->mode[PASSO_GCODE_MOTION])
+		? check->block.words & (PASSO_GCODE_WORD('I') | PASSO_GCODE_WORD('J') | PASSO_GCODE_WORD('K'))
+		: 0;
 
 	check->moves = (motion != PASSO_GCODE_NONE && motion != PASSO_GCODE_G(80, 0))
-	            || (check->axis_words && !check->block.takes_axes);
+	            || ((check->axis_words || offsets) && !check->block.takes_axes);
 	check->unused &= ~check->axis_words;
 	return PASSO_GCODE_OK;
 }
@@ -179,20 +183,22 @@ static enum passo_gcode_error check_return(struct passo_gcode_check *check, cons
 	return error;
 }
 
-/* G61: every point is passed. G64: the tolerance is Q, or P alone, unless P is that of G4 or G10; without
- * them it is 0, the path's own. */
+/* G61, G61.1: every point is passed. G64: the tolerance is Q, or P alone, unless P is that of G4, G10 or a
+ * cycle; without them it is 0, the path's own. */
 static enum passo_gcode_error check_path(struct passo_gcode_check *check)
 {
 	const passo_gcode_command command = check->block.command[PASSO_GCODE_COMMAND];
 	const passo_gcode_command path = check->block.command[PASSO_GCODE_PATH];
+	const passo_gcode_command motion = check->mode[PASSO_GCODE_MOTION];
 	char letter = '\0';
 
 	check->tolerance = check->gcode->tolerance;
 	if (path == PASSO_GCODE_NONE)
 		return PASSO_GCODE_OK;
 	check->tolerance = path == PASSO_GCODE_G(64, 0) ? 0 : PASSO_PATH_UNMERGED;
-	if (path == PASSO_GCODE_G(64, 0) && command != PASSO_GCODE_G(4, 0) && command != PASSO_GCODE_G(10, 0)
-	    && passo_gcode_take(check, 'P'))
+	if (path != PASSO_GCODE_G(64, 0) || (check->moves && passo_gcode_is_cycle(motion)))
+		return PASSO_GCODE_OK;
+	if (command != PASSO_GCODE_G(4, 0) && command != PASSO_GCODE_G(10, 0) && passo_gcode_take(check, 'P'))
 		letter = 'P';
 	if (passo_gcode_take(check, 'Q'))
 		letter = 'Q';

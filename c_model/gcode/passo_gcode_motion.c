@@ -34,7 +34,7 @@ enum passo_gcode_error passo_gcode_find_target(const struct passo_gcode_check *c
 	return PASSO_GCODE_OK;
 }
 
-static struct passo_gcode_plane plane_of(const struct passo_gcode_check *check)
+struct passo_gcode_plane passo_gcode_plane_of(const struct passo_gcode_check *check)
 {
 	switch (check->mode[PASSO_GCODE_PLANE]) {
 	case PASSO_GCODE_G(18, 0):
@@ -54,6 +54,11 @@ static int64_t offset_along(const struct passo_gcode_check *check, unsigned axis
 	return passo_gcode_in_range(offset) ? offset : PASSO_GCODE_COORDINATE_MAX + 1;
 }
 
+bool passo_gcode_is_arc(passo_gcode_command motion)
+{
+	return motion == PASSO_GCODE_G(2, 0) || motion == PASSO_GCODE_G(3, 0);
+}
+
 static enum passo_gcode_error find_center(
     struct passo_gcode_check *check, const struct passo_gcode_arc *arc, struct passo_gcode_vector *offset)
 {
@@ -64,6 +69,10 @@ static enum passo_gcode_error find_center(
 	if (passo_gcode_take(check, 'R')) {
 		const int64_t radius = passo_gcode_length_of(check, 'R');
 
+		if (check->axis_words == 0)
+			return PASSO_GCODE_NO_AXIS_WORDS;
+		if (!passo_gcode_has_axis(check, first) && !passo_gcode_has_axis(check, second))
+			return PASSO_GCODE_NO_PLANE_WORDS;
 		if (!passo_gcode_in_range(radius))
 			return PASSO_GCODE_RADIUS;
 		return passo_gcode_arc_center(chord, radius, arc->clockwise, offset);
@@ -86,14 +95,10 @@ static enum passo_gcode_error check_arc(struct passo_gcode_check *check)
 	struct passo_gcode_vector offset;
 
 	*arc = (struct passo_gcode_arc){
-	    .plane = plane_of(check),
+	    .plane = passo_gcode_plane_of(check),
 	    .clockwise = check->mode[PASSO_GCODE_MOTION] == PASSO_GCODE_G(2, 0),
 	    .axes = check->gcode->settings.axes,
 	};
-	if (check->axis_words == 0)
-		return PASSO_GCODE_NO_AXIS_WORDS;
-	if (!passo_gcode_has_axis(check, arc->plane.first) && !passo_gcode_has_axis(check, arc->plane.second))
-		return PASSO_GCODE_NO_PLANE_WORDS;
 	for (unsigned axis = 0; axis < arc->axes; axis++) {
 		arc->start[axis] = check->gcode->position[axis];
 		arc->target[axis] = check->job->destination[axis];
@@ -160,9 +165,11 @@ enum passo_gcode_error passo_gcode_check_motion(struct passo_gcode_check *check)
 	error = passo_gcode_find_target(check, job->destination);
 	if (error != PASSO_GCODE_OK)
 		return error;
-	job->motion = check->axis_words != 0;
-	if (motion == PASSO_GCODE_G(2, 0) || motion == PASSO_GCODE_G(3, 0))
+	job->motion = check->axis_words != 0 || passo_gcode_is_arc(motion);
+	if (passo_gcode_is_arc(motion))
 		error = check_arc(check);
+	else if (passo_gcode_is_cycle(motion))
+		error = passo_gcode_check_cycle(check);
 	else if (motion > 380)
 		error = check_probe(check);
 	job->feed = motion == 0 ? PASSO_PATH_RAPID : feed_of(check);

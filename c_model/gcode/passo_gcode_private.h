@@ -13,11 +13,12 @@ struct passo_gcode_check {
 	struct passo_gcode_block block;
 	passo_gcode_command mode[PASSO_GCODE_MODES];
 	uint32_t axis_words;
-	uint32_t unused;          /* words not used by a command yet */
-	bool moves;               /* the axis words are those of a motion, given or in force */
-	int64_t feed;             /* nm/min, of G94; 0: none */
-	int64_t inverse;          /* millionths of 1/min, of G93 */
-	uint64_t tolerance;       /* UQ32.32 mm, of G61 and G64 */
+	uint32_t unused;    /* words not used by a command yet */
+	bool moves;         /* the axis words are those of a motion, given or in force */
+	int64_t feed;       /* nm/min, of G94; 0: none */
+	int64_t inverse;    /* millionths of 1/min, of G93 */
+	uint64_t tolerance; /* UQ32.32 mm, of G61 and G64 */
+	struct passo_gcode_drill drill;
 	unsigned system;          /* that is set by G10 */
 	passo_gcode_position set; /* by G10, G92; of G43.1 the tool length in place of Z */
 };
@@ -41,6 +42,11 @@ int64_t passo_gcode_offset_of(const struct passo_gcode_check *check, unsigned ax
 enum passo_gcode_error passo_gcode_check_words(struct passo_gcode_check *check);
 /* The motion: fills in the job. */
 enum passo_gcode_error passo_gcode_check_motion(struct passo_gcode_check *check);
+bool passo_gcode_is_arc(passo_gcode_command motion);
+/* Whether a motion is a drilling cycle, and the checks of its words: fills in the job. */
+bool passo_gcode_is_cycle(passo_gcode_command motion);
+enum passo_gcode_error passo_gcode_check_cycle(struct passo_gcode_check *check);
+struct passo_gcode_plane passo_gcode_plane_of(const struct passo_gcode_check *check);
 /* The target of the axis words. Error: TARGET. */
 enum passo_gcode_error passo_gcode_find_target(const struct passo_gcode_check *check, int64_t *target);
 

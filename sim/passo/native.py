@@ -21,7 +21,10 @@ HEADERS = (
     paths.planner / "passo_plan.h",
     paths.planner / "passo_path_state.h",
     paths.planner / "passo_path.h",
-    *(paths.gcode / f"passo_gcode{part}.h" for part in ("_error", "_line", "_block", "_angle", "_arc", "")),
+    *(
+        paths.gcode / f"passo_gcode{part}.h"
+        for part in ("_error", "_line", "_block", "_angle", "_arc", "_cycle", "")
+    ),
     paths.protocol / "passo_frame.h",
     paths.driver / "passo_error.h",
     paths.driver / "passo_host.h",

@@ -87,12 +87,15 @@ static enum passo_error take_line(struct passo_player *player, enum passo_player
 	}
 	for (unsigned axis = 0; axis < player->gcode->settings.axes; axis++)
 		move.target[axis] = passo_gcode_millimetres(action->target[axis]);
-	passo_path_tolerance(player->feed->path, player->gcode->tolerance);
+	passo_path_tolerance(player->feed->path, action->tolerance);
 	const uint32_t known = player->feed->path->added;
 	const enum passo_plan_error error = passo_path_add(player->feed->path, &move);
 	player->waits = error == PASSO_PLAN_PATH_FULL;
-	if (error == PASSO_PLAN_OK)
+	if (error == PASSO_PLAN_OK) {
 		player->chords++;
+		if (action->stops)
+			passo_path_dwell(player->feed->path, 0);
+	}
 	if (player->feed->path->added != known)
 		passo_player_note(player, known);
 	if (error == PASSO_PLAN_OK || player->waits)

@@ -31,7 +31,8 @@ class Usart(Peripheral):
     def reset(self) -> None:
         """Disable. Characters that the terminal has still to send are kept."""
         super().reset()
-        self._incoming: deque[tuple[int, int, bool]] = getattr(self, "_incoming", deque())  # end, character, damaged
+        # end, character, damaged
+        self._incoming: deque[tuple[int, int, bool]] = getattr(self, "_incoming", deque())
         self._sending: int | None = None
         self._sent_at = NEVER
         self._waiting = self._received = 0

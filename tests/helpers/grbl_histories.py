@@ -25,7 +25,7 @@ OTHERS = (
 )
 CODES = (
     *("G4 P0.02", "G4 P0", "M3 S500", "M5", "M8", "M9", "M0", "M2", "M30", "G92 X0", "G92.1", "G10 L2 P1 X1"),
-    *("G28.1", "G20", "G21", "G90", "", "(a comment)", "; another", "%", "X1 X2", "G1 F", "G99", "Q", "(a(b"),
+    *("G28.1", "G20", "G21", "G90", "", "(a comment)", "; another", "%", "X1 X2", "G1 F", "G5", "Q", "(a(b"),
 )
 History = list[str]
 

@@ -31,6 +31,7 @@ class Judge:
         False  # bytes come one by one: a resume may be served after the hold before it, in a poll of its own
     )
     pending: list[str] = field(default_factory=list)  # lines without an answer
+    late: list[str] = field(default_factory=list)  # sent with a reset, after it: it drops them or not
     part: str = ""
     steps: tuple[int, ...] = (0, 0, 0)
     base: tuple[int, ...] = (0, 0, 0)  # position less steps, since the last home
@@ -62,6 +63,7 @@ class Judge:
 
     def _sent(self, ms: int, data: str) -> None:
         batch = [data[i : i + 2] for i in range(0, len(data), 2)]
+        resets = False
         for code in batch:
             if code in OVERRIDES:
                 index, change = OVERRIDES[code]
@@ -69,8 +71,11 @@ class Judge:
                 self.percent[index] = min(200, max(10, now))
             elif code == "18":
                 self.percent = [100, 100, 100]
+                self.late, resets = [], True
             elif int(code, 16) < 0x80 and code not in ("21", "7e", "3f"):
                 self._byte(chr(int(code, 16)))
+                if resets and self.serial and code == "0a":
+                    self.late.append(self.pending[-1])
         holding = "21" in batch or "84" in batch
         if self.serial and "7e" in batch and holding:
             holding = batch[::-1].index("7e") > min(
@@ -123,17 +128,17 @@ class Judge:
             self.percent = [100, 100, 100]
 
     def _answer(self, ms: int, text: str) -> None:
-        if not self.pending:
+        if not self.pending and not self.late:
             raise FindingError(f"{ms} ms: {text} answers no line")
-        line = self.pending.pop(0)
+        line = (self.pending or self.late).pop(0)
         plain = re.sub(r"[ \t]|\(.*?\)|\(.*|;.*", "", line).upper()
         if plain in ("", "%") and text not in ("ok", "error:11", "error:9"):
             raise FindingError(f"{ms} ms: {text} to {line!r}")
-        if plain in ("X1X2", "G99", "Q", "$999=1", "$32=X", "$120=0", "$11=-1", "G1F") and text == "ok":
+        if plain in ("X1X2", "G5", "Q", "$999=1", "$32=X", "$120=0", "$11=-1", "G1F") and text == "ok":
             raise FindingError(f"{ms} ms: ok to {line!r}")
         if plain.startswith(("$J", "$N0=G0")) and text == "ok" and self.state == "Check":
             raise FindingError(f"{ms} ms: ok to {line!r} in Check")
-        if plain.startswith("$J") and text == "ok" and self.state == "Idle":
+        if plain.startswith("$J") and text == "ok" and self.state in ("Idle", "Run"):  # Run has ended before
             self.state = "Jog"
         if plain in ("$X", "$H") and text == "ok":  # no Alarm from here on, whatever was reported before
             self.state, self.rests = "", -1
