@@ -2,6 +2,7 @@
 """The motions of a G-code program, in mm and machine coordinates, from any interpreter."""
 
 import math
+import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
@@ -87,4 +88,20 @@ def difference(a: Motion, b: Motion) -> str:
             return "way round"
         if math.dist(a.center, b.center) > near:
             return "center"
+    return ""
+
+
+def verdict(ours: Played, theirs: Played) -> str:
+    """The first difference, with the number of its line; empty: there is none."""
+    first = min((played.refused for played in (ours, theirs) if played.refused), default=sys.maxsize)
+    mine, other = (
+        [motion for motion in moving(played.motions) if motion.label < first] for played in (ours, theirs)
+    )
+    for a, b in zip(mine, other, strict=False):
+        if found := difference(a, b):
+            return f"line {min(a.label, b.label)}: {found}: {a} {b}"
+    if len(mine) != len(other):
+        return f"{len(mine)} motions are {len(other)}"
+    if ours.refused != theirs.refused:
+        return f"line {first}: refused by one: {ours.why}{theirs.why}"
     return ""

@@ -23,8 +23,7 @@ RS274 = paths.root / ".venv" / "rs274"  # by tools/setup.sh gcode
 CALL = re.compile(r" *\d+ N(\S+) +(\w+)\((.*)\)")
 INCH = 25.4
 SECONDS = 20
-TRIES = 5
-TOOLS = 100
+TOOLS = 100  # with diameters of as many hundredths of an inch
 LOWEST = 0.1 * INCH  # mm/min: it may raise lower feeds of G93
 TURNS = {"START_SPINDLE_CLOCKWISE": 1, "START_SPINDLE_COUNTERCLOCKWISE": -1, "STOP_SPINDLE_TURNING": 0}
 
@@ -37,27 +36,24 @@ def play_rs274(program: Sequence[str]) -> Played:
         folder = Path(name)
         write_text(folder / "part.ngc", "\n".join([*labelled(program), "M2", ""]))
         (folder / "vars").touch()
-        write_text(folder / "tools", "".join(f"T{tool} P{tool}\n" for tool in range(1, TOOLS)))
+        write_text(folder / "tools", "".join(f"T{tool} P{tool} D{tool / 100}\n" for tool in range(1, TOOLS)))
         command = [RS274 / "rs274", "-g", "-n", "2", "-v", "vars", "-t", "tools", "part.ngc", "calls"]
-        for _ in range(TRIES):  # those that run at the same time share memory: a signal may end one
-            done = subprocess.run(
-                command,
-                cwd=folder,
-                env=os.environ | {"LD_LIBRARY_PATH": str(RS274)},
-                stdin=subprocess.DEVNULL,
-                capture_output=True,
-                text=True,
-                timeout=SECONDS,
-            )
-            if done.returncode >= 0:
-                break
+        done = subprocess.run(
+            command,
+            cwd=folder,
+            env=os.environ | {"LD_LIBRARY_PATH": str(RS274), "HOME": name},
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=SECONDS,
+        )
         calls = (folder / "calls").read_text().splitlines()
     said = [line for line in done.stderr.splitlines() if line and line != "executing"]
     if done.returncode == 0:
         return Played(list(_motions(calls)))
     if done.returncode != 1 or not said:
         raise Failure(f"rs274: {done.returncode} {done.stderr}")
-    label = re.match(r"N *(\d+)", said[-1])
+    label = re.match(r"N *(\d+)", said[-1]) or re.search(r" line: (\d+)$", said[0])
     if not label:
         raise Failure(f"rs274: {done.stderr}")
     return Played(list(_motions(calls)), int(label[1]), said[0])

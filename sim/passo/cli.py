@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
-from passo import __version__, campaign_options, console_options
+from passo import __version__, campaign_options, console_options, expand_options
 from passo.failure import BadInputError, Failure
 from passo.output import BROKEN_PIPE, FULL, drop_output
 
@@ -77,6 +77,10 @@ def _parser() -> argparse.ArgumentParser:
     )
     run.add_argument("--plot", action="store_true", help="write motion.png, for G-code path.png")
     run.add_argument("--report", action="store_true", help="write report.html, zoomable to single clocks")
+    run.add_argument("--tools", type=Path, metavar="TOOLS.tbl", help=expand_options.TOOLS)
+    expand, height_map = expand_options.add(commands)
+    expand.set_defaults(command=_expand)
+    height_map.set_defaults(command=_height_map)
     shape = commands.add_parser("shape", help="create and check the table of a user-defined shape")
     shape.set_defaults(command=_shape)
     source = shape.add_mutually_exclusive_group(required=True)
@@ -131,14 +135,28 @@ def _run(options: argparse.Namespace) -> int:
         if options.waves or options.report:
             raise BadInputError("--waves and --report are for moves, not for G-code")
         engine = options.engine or "model"
-        done = run_part(options.moves, options.machine, engine, options.out, options.plot)
+        done = run_part(options.moves, options.machine, options.tools, engine, options.out, options.plot)
         return OK if done else FAILED
     from passo.run_command import Wanted, run_file
 
-    if options.machine:
-        raise BadInputError(f"--machine is for G-code: {', '.join(PART_SUFFIXES)}")
+    if options.machine or options.tools:
+        raise BadInputError(f"--machine and --tools are for G-code: {', '.join(PART_SUFFIXES)}")
     wanted = Wanted(options.waves, options.plot, options.report)
     return OK if run_file(options.moves, options.engine or "both", options.out, wanted) else FAILED
+
+
+def _expand(options: argparse.Namespace) -> int:
+    from passo.expand.expand_command import run_expand
+
+    run_expand(options)
+    return OK
+
+
+def _height_map(options: argparse.Namespace) -> int:
+    from passo.expand.expand_command import run_height_map
+
+    run_height_map(options)
+    return OK
 
 
 def _shape(options: argparse.Namespace) -> int:

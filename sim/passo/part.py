@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A part of G-code on a machine: its lines are checked, then played on an engine."""
 
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,6 +11,10 @@ import numpy as np
 
 from passo.driver import Driver
 from passo.engine import Engine
+from passo.expand.expander import Options, expand_file, needs_expanding
+from passo.expand.place import Place
+from passo.expand.refusals import explain_text
+from passo.expand.tools import Tool
 from passo.failure import BadInputError
 from passo.gcode import NANOMETERS, Gcode, GcodeError, has_words, lines
 from passo.machine_file import MachineFile
@@ -70,28 +75,38 @@ class Played:
         return found
 
 
-def read_part(path: Path, machine: MachineFile) -> Part:
-    """Check all lines of a file; raises BadInputError with the number of the first bad line."""
+def read_part(path: Path, machine: MachineFile, tools: dict[int, Tool] | None = None) -> Part:
+    """Check all lines of a file, expanded if it needs that; raises BadInputError with the first bad line."""
     try:
-        text = lines(path.read_bytes())
+        data = path.read_bytes()
     except OSError as error:
         raise BadInputError(f"{path}: {error.strerror}") from None
+    text, places = lines(data), None
+    if needs_expanding(data):
+        expanded = expand_file(path, Options(machine.gcode, tools or {}, at_zero=True), _say)
+        text, places = [f"{line.text}\n".encode() for line in expanded], [line.place for line in expanded]
     if not any(map(has_words, text)):
         raise BadInputError(f"{path}: the file has no G-code")
     gcode, chords = Gcode(machine.gcode), 0
     for number, line in enumerate(text, 1):
+        place = places[number - 1] if places else Place(path, number)
         try:
             gcode.execute(line)
         except GcodeError as error:
-            raise BadInputError(f"{path}:{number}: {error}") from None
+            why = explain_text(error, line.decode("utf-8", "replace"), machine.gcode.axes)
+            raise BadInputError(f"{place}: {why}") from None
         for action in gcode.actions():
             if action.kind == planner().PASSO_GCODE_PROBE:
-                raise BadInputError(f"{path}:{number}: no probe is fitted")
+                raise BadInputError(f"{place}: no probe is fitted")
             if action.kind == planner().PASSO_GCODE_END:
                 unread = sum(map(has_words, text[number:]))
                 return Part(path, text[:number], chords, gcode.position, unread)
             chords += action.kind == planner().PASSO_GCODE_LINE
     return Part(path, text, chords, gcode.position, 0)
+
+
+def _say(text: str) -> None:
+    print(text, file=sys.stderr)
 
 
 def play_part(

@@ -8,6 +8,7 @@ from typing import Any
 
 from passo.axis_judge import Share, faults
 from passo.console import progress
+from passo.expand.tools import read_tools
 from passo.failure import BadInputError
 from passo.gcode import AXIS_LETTERS, NANOMETERS
 from passo.machine_file import MachineFile, read_machine
@@ -20,12 +21,19 @@ from passo.toolchain import paths
 SUMMARY, PICTURE = "summary.json", "path.png"
 
 
-def run_part(path: Path, machine_path: Path | None, engine: str, out: Path | None, plot: bool) -> bool:
+def run_part(
+    path: Path,
+    machine_path: Path | None,
+    tools: Path | None,
+    engine: str,
+    out: Path | None,
+    plot: bool,
+) -> bool:
     """Play a part, write the results and say where they are; return whether the motion was exact."""
     if machine_path is None:
         raise BadInputError(f"{path}: G-code needs --machine MACHINE.toml (docs/gcode.md)")
     machine = read_machine(machine_path)
-    part = read_part(path, machine)
+    part = read_part(path, machine, read_tools(tools))
     out = out or paths.results / "run" / path.stem
     empty_folder(out, (SUMMARY, PICTURE))
     parameters = parameters_for(len(machine.settings.axes))

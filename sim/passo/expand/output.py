@@ -1,0 +1,265 @@
+# SPDX-License-Identifier: MIT
+"""Plain lines: what a line without parameters and expressions becomes, with cutter compensation."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from passo.expand.block import Word
+from passo.expand.compensation import Compensation, Step
+from passo.expand.machine import CYCLES, FEED_MODE, LINES_AND_ARCS, MOTION, PLANE, SYSTEM, Machine, Motion
+from passo.expand.place import ExpandError, Place
+from passo.expand.refusals import explain
+from passo.expand.writer import Writer, flat, length
+from passo.gcode import AXIS_LETTERS, Gcode, GcodeError
+
+OFF, ON = 400, {410: 1, 411: 1, 420: -1, 421: -1}
+# Commands that may be used while compensation is on, besides those that change nothing.
+ALLOWED = {*LINES_AND_ARCS, 40, 610, 611, 640, 800, 200, 210, 900, 910, 911, 930, 940, OFF}
+TOOL_CHANGES, PAUSES, ENDS = (6, 61), (0, 1, 60), (2, 30)
+# Commands that use the position, which is not that of the contour before the first motion after G40.
+USES_POSITION = {100, 281, 301, 920, *range(382, 386)}
+FIRST_AFTER = "the first motion after G40 must be a straight line: G0 or G1"
+
+
+@dataclass(frozen=True)
+class PlainLine:
+    """A line that any Passo takes, and where it is from."""
+
+    text: str
+    place: Place
+
+
+class Output:
+    """Collects plain lines."""
+
+    def __init__(self, machine: Machine):
+        self.machine = machine
+        self.lines: list[PlainLine] = []
+        self._compensation: Compensation | None = None
+        self._leaving = False  # the first motion after G40 is due
+        # In the plane of the compensation, while the tool is not where the program says.
+        self._writer = Writer(machine.plane, [])
+        self._compensated = False
+
+    def take(self, text: str, words: Sequence[Word], comments: Sequence[str], place: Place) -> None:
+        """A line as text, and its words; raises ExpandError."""
+        codes = {word.code for word in words if word.letter == "G"}
+        if self._compensation or self._leaving or codes & ON.keys():
+            self._take_compensated(text, words, comments, place, codes)
+        else:
+            if OFF in codes:
+                self.machine.compensation = OFF
+            try:
+                self.machine.advance(text, words)
+            except GcodeError as error:
+                raise ExpandError(place, explain(error, words, self.machine.axes)) from None
+            self.lines.append(PlainLine(text, place))
+
+    def finish(self) -> None:
+        """The program has ended; raises ExpandError."""
+        if self._compensation:
+            self._compensation.finish()
+        if self._compensated:
+            self._check()
+
+    def _check(self) -> None:
+        """Whether an interpreter takes all lines."""
+        gcode = Gcode(self.machine.gcode.settings)
+        for line in self.lines:
+            try:
+                gcode.execute(line.text)
+            except GcodeError as error:
+                raise ExpandError(line.place, f"{error}: {line.text}") from None
+            for _ in gcode.actions():
+                pass
+
+    def _execute(self, text: str, words: Sequence[Word], place: Place) -> Motion | None:
+        try:
+            return self.machine.execute(text, words)
+        except GcodeError as error:
+            raise ExpandError(place, explain(error, words, self.machine.axes)) from None
+
+    def _take_compensated(
+        self, text: str, words: Sequence[Word], comments: Sequence[str], place: Place, codes: set[int]
+    ) -> None:
+        commands = {word.code // 10 for word in words if word.letter == "M"}
+        turned_on = codes & ON.keys()
+        if OFF in codes:
+            self._end()
+        if self._compensation:
+            self._refuse(codes, commands, place)
+        elif self._leaving and not turned_on and self._passes(text, words, place, codes):
+            return
+        start = self.machine.work
+        known = [self.machine.knows(axis) for axis in range(self.machine.axes)]
+        rest = [word for word in words if not _of_compensation(word, bool(turned_on))]
+        motion = self._execute(" ".join(map(str, rest)), rest, place)
+        drills = self.machine.mode(MOTION) in CYCLES and any(word.letter in AXIS_LETTERS for word in rest)
+        if self._leaving and drills:
+            raise ExpandError(place, FIRST_AFTER)
+        if turned_on:
+            self._begin(min(turned_on), words, start, place)
+            self._refuse(codes - turned_on, commands, place)
+        lead, tail = parts(rest, motion, self.machine.mode(FEED_MODE) == 930)
+        label = ""
+        if motion and not comments and [word.letter for word in lead] == ["N"]:
+            label, lead = f"{lead[0]} ", []
+        self._text(" ".join([*map(str, lead), *comments]), place)
+        if motion:
+            if self._compensation and self._compensation.first and not self.machine.incremental:
+                self._need_known(known, place)
+            self._move(motion, words, place, label)
+        if tail:
+            if self._compensation and commands & {*PAUSES, *ENDS}:
+                self._compensation.finish()
+            self._text(" ".join(map(str, tail)), place)
+
+    def _passes(self, text: str, words: Sequence[Word], place: Place, codes: set[int]) -> bool:
+        """Whether a line after G40 is not its last motion; it is taken then."""
+        letters = {word.letter for word in words}
+        plane = {AXIS_LETTERS[axis] for axis in self._writer.plane}
+        if codes & USES_POSITION:
+            raise ExpandError(place, FIRST_AFTER)
+        if not codes & {280, 300, 530}:
+            return False
+        all_axes = plane <= letters or (not letters & set(AXIS_LETTERS) and 530 not in codes)
+        if not all_axes and letters & plane:
+            raise ExpandError(place, FIRST_AFTER)
+        self._execute(text, words, place)
+        self.lines.append(PlainLine(text, place))
+        self._leaving = not all_axes
+        for axis, at in enumerate(self.machine.work):
+            if axis not in self._writer.plane:
+                self._writer.at[axis] = at
+        return True
+
+    def _refuse(self, codes: set[int], commands: set[int], place: Place) -> None:
+        machine = self.machine
+        refused = [
+            _name(code) for code in sorted(codes - ALLOWED - {machine.mode(PLANE), machine.mode(SYSTEM)})
+        ]
+        refused += [f"M{command}" for command in TOOL_CHANGES if command in commands]
+        if machine.mode(MOTION) not in (*LINES_AND_ARCS, 800):
+            refused.append(_name(machine.mode(MOTION)))
+        if refused:
+            raise ExpandError(
+                place, f"{refused[0]} cannot be used while {self._command} is in force: write G40 before"
+            )
+
+    def _begin(self, code: int, words: Sequence[Word], start: tuple[float, ...], place: Place) -> None:
+        machine, side = self.machine, ON[code]
+        if machine.mode(PLANE) == 190:
+            raise ExpandError(place, f"{_name(code)} is for the planes XY and ZX: write G17 or G18")
+        radius = self._radius(code, words, place)
+        if radius < 0:
+            side, radius = -side, -radius
+        machine.compensation = 410 if side > 0 else 420
+        if not radius:
+            return
+        if not self._leaving:
+            self._writer = Writer(machine.plane, list(start))
+        elif self._writer.plane != machine.plane:
+            raise ExpandError(place, FIRST_AFTER)
+        self._leaving, self._compensated = False, True
+        self._compensation = Compensation(side, radius, flat(start, self._writer.plane), self._emit)
+
+    def _radius(self, code: int, words: Sequence[Word], place: Place) -> float:
+        values = {word.letter: word.value for word in words}
+        machine = self.machine
+        if code in (411, 421):
+            if "D" not in values:
+                raise ExpandError(place, f"{_name(code)} needs the diameter of the tool: D")
+            if values.get("L", 0) not in (0, 9):
+                raise ExpandError(place, f"{_name(code)}: L: edges of lathe tools are not supported")
+            return values["D"] * machine.scale / 2
+        number = round(values["D"]) if "D" in values else machine.tool
+        if number == 0:
+            return 0.0
+        if number is None:
+            raise ExpandError(place, f"{_name(code)}: which tool? Write M6, D or {_name(code + 1)} D")
+        if number not in machine.tools:
+            raise ExpandError(
+                place,
+                f"{_name(code)}: no tool table has T{number}: --tools, or {_name(code + 1)} D",
+            )
+        return machine.tools[number].diameter / 2
+
+    def _end(self) -> None:
+        self.machine.compensation = OFF
+        if self._compensation:
+            self._compensation.finish()
+            self._leaving = not self._compensation.first
+            self._compensation = None
+
+    def _need_known(self, known: list[bool], place: Place) -> None:
+        for axis in self._writer.plane:
+            if not known[axis]:
+                letter = AXIS_LETTERS[axis]
+                raise ExpandError(
+                    place,
+                    f"{letter} is not known at its beginning: move {letter} before {self._command}",
+                )
+
+    @property
+    def _command(self) -> str:
+        return _name(self.machine.compensation)
+
+    def _move(self, motion: Motion, words: Sequence[Word], place: Place, label: str) -> None:
+        machine, plane = self.machine, self._writer.plane
+        step = Step(
+            place, flat(motion.end, plane), motion.end, motion.rapid, motion.center, motion.clockwise,
+            scale=machine.scale, incremental=machine.incremental, label=label,
+        )  # fmt: skip
+        if machine.mode(FEED_MODE) == 930 and not motion.rapid:
+            rate = next(word.value for word in words if word.letter == "F")
+            step.speed = rate * length(step, motion.start, motion.end, plane)
+        if self._compensation is None:
+            if motion.center is not None:
+                raise ExpandError(place, FIRST_AFTER)
+            self._leaving = False
+            self._emit(step, place)
+        elif motion.center is None:
+            self._compensation.line(step)
+        else:
+            self._compensation.arc(step)
+
+    def _text(self, text: str, place: Place) -> None:
+        if not text:
+            return
+        if self._compensation:
+            self._compensation.text(text, place)
+        else:
+            self.lines.append(PlainLine(text, place))
+
+    def _emit(self, item: Step | str, place: Place) -> None:
+        """Write a line, or a motion of the tool's center."""
+        if isinstance(item, str):
+            self.lines.append(PlainLine(item, place))
+            return
+        self.lines.append(PlainLine(self._writer.write(item), place))
+
+
+def _of_compensation(word: Word, turned_on: bool) -> bool:
+    """Whether a word is for the compensation alone."""
+    return (word.letter == "G" and word.code in {*ON, OFF}) or (turned_on and word.letter in "DL")
+
+
+def parts(words: list[Word], motion: Motion | None, inverse: bool) -> tuple[list[Word], list[Word]]:
+    """What of a line is before its motion, which is written again, and what is behind it."""
+    lead, tail = [], []
+    for word in words:
+        if word.letter == "M" and word.code // 10 in (*PAUSES, *ENDS):
+            tail.append(word)
+        elif motion and (
+            word.letter in AXIS_LETTERS + "IJKR"
+            or (word.letter == "G" and word.code in LINES_AND_ARCS)
+            or (word.letter == "F" and inverse)
+        ):
+            continue
+        else:
+            lead.append(word)
+    return lead, tail
+
+
+def _name(code: int) -> str:
+    return f"G{code // 10}" + (f".{code % 10}" if code % 10 else "")

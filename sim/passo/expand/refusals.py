@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: MIT
+"""What to say of a word that Passo does not take: the norm it is from, and what to write instead."""
+
+from collections.abc import Sequence
+
+from passo.expand.block import Word, words_of
+from passo.gcode import AXIS_LETTERS, Gcode, GcodeError, GcodeSettings
+
+NOT_TAKEN = frozenset((3, 20, 23))  # errors of a command that Passo does not have
+# By the command in tenths, or a range of them: norm, and what to do.
+ADVICE: tuple[tuple[str, range, str, str], ...] = (
+    ("G", range(50, 54), "LinuxCNC", "a spline: let the CAM program write G1, G2 and G3"),
+    ("G", range(70, 90), "LinuxCNC", "lathe: write radii, without G7 and G8"),
+    ("G", range(101, 102), "LinuxCNC", "edit the tool table instead"),
+    ("G", range(171, 192), "LinuxCNC", "there are no axes U V W"),
+    ("G", range(330, 332), "LinuxCNC", "threading needs a spindle in step"),
+    ("G", range(410, 423), "NIST", "expand the file: passo expand"),
+    ("G", range(430, 433), "NIST", "write the length: G43.1 Z"),
+    ("G", range(500, 515), "NIST, FIDIA", "scale in the CAM program"),
+    ("G", range(520, 521), "LinuxCNC, Fanuc", "write G92, or G10 L2"),
+    ("G", range(591, 594), "LinuxCNC", "Passo has the systems G54 to G59"),
+    ("G", range(740, 900), "NIST", "let the CAM program write out the cycle"),
+    ("G", range(901, 902), "LinuxCNC", "write I J K as increments"),
+    ("G", range(920, 924), "NIST", "G92 and G92.1 are taken"),
+    ("G", range(950, 980), "LinuxCNC", "write F in units per minute and S in rpm: G94"),
+    ("M", range(60, 70), "NIST", "pause with M0 and change the tool by hand"),
+    ("M", range(190, 200), "LinuxCNC", "the spindle cannot be oriented"),
+    ("M", range(480, 540), "NIST, LinuxCNC", "overrides are the sender's: leave it out"),
+    ("M", range(600, 610), "NIST", "pause with M0"),
+    ("M", range(610, 690), "LinuxCNC", "the machine has no such outputs and inputs"),
+    ("M", range(700, 740), "LinuxCNC", "write the modes that are to be restored"),
+    ("M", range(820, 1100), "RepRap", "this is for 3D printers: leave it out"),
+    (
+        "M",
+        range(1000, 2000),
+        "LinuxCNC, RepRap",
+        "a user's program, or for 3D printers: leave it out",
+    ),
+)
+LETTERS = {
+    "D": "NIST: a tool's diameter, with G41 or G42",
+    "E": "RepRap: for 3D printers",
+    "H": "NIST: a tool's length, with G43",
+    "U": "LinuxCNC: an axis beside X",
+    "V": "LinuxCNC: an axis beside Y",
+    "W": "LinuxCNC: an axis beside Z",
+}
+
+
+def explain(error: GcodeError, words: Sequence[Word], axes: int) -> str:
+    """The error of a line with the word that it is about, where that is known."""
+    if error.number not in NOT_TAKEN:
+        return str(error)
+    for word in words:
+        if word.letter in AXIS_LETTERS[axes:]:
+            return f"{error}: {word}: the machine has the axes {' '.join(AXIS_LETTERS[:axes])}"
+        if word.letter in LETTERS and not _is_taken(word, axes):
+            return f"{error}: {word} ({LETTERS[word.letter]})"
+        if word.letter in "GM" and not _is_taken(word, axes):
+            norm, advice = _advice(word)
+            return f"{error}: {word} ({norm}): {advice}"
+    return str(error)
+
+
+def explain_text(error: GcodeError, text: str, axes: int) -> str:
+    """The same for a line as text."""
+    return explain(error, words_of(text), axes)
+
+
+def _is_taken(word: Word, axes: int) -> bool:
+    try:
+        Gcode(GcodeSettings(axes=axes)).execute(str(word))
+    except GcodeError as error:
+        return error.number not in NOT_TAKEN
+    return True
+
+
+def _advice(word: Word) -> tuple[str, str]:
+    for letter, codes, norm, advice in ADVICE:
+        if letter == word.letter and word.code in codes:
+            return norm, advice
+    return "of no norm that Passo follows", "leave it out, or write what it means"

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: MIT
+"""Options of `passo expand` and `passo heightmap`."""
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+TOOLS = "with G41 and G42: tool table of LinuxCNC, in mm"
+
+
+def add(
+    commands: Any,
+) -> tuple[argparse.ArgumentParser, ...]:
+    """Add both commands; return their parsers."""
+    expand = commands.add_parser("expand", help="G-code as LinuxCNC has it, to plain lines for any Passo")
+    expand.add_argument("part", type=Path, metavar="PART.ngc", help="program (docs/gcode.md)")
+    height_map = commands.add_parser("heightmap", help="G-code that follows a probed surface, or probes it")
+    source = height_map.add_mutually_exclusive_group(required=True)
+    source.add_argument("part", type=Path, nargs="?", metavar="PART.ngc", help="program, expanded if needed")
+    source.add_argument("--probe", metavar="X0,Y0,X1,Y1", help="write lines that probe this rectangle, mm")
+    height_map.add_argument(
+        "--map", type=Path, metavar="MAP.csv", help="x,y,z in mm, or a log with [PRB:...]"
+    )
+    height_map.add_argument("--origin", metavar="X,Y,Z", help="with a log: work zero in machine coordinates")
+    height_map.add_argument("--step", type=float, default=10, metavar="MM", help="probe: grid (default 10)")
+    height_map.add_argument("--depth", type=float, default=2, metavar="MM", help="probe: below 0 (default 2)")
+    height_map.add_argument("--feed", type=float, default=50, metavar="MM/MIN", help="probe (default 50)")
+    for parser in (expand, height_map):
+        parser.add_argument("-o", "--out", type=Path, metavar="FILE", help="write to a file")
+        parser.add_argument("--machine", type=Path, metavar="MACHINE.toml", help="its axes (default: six)")
+        parser.add_argument("--tools", type=Path, metavar="TOOLS.tbl", help=TOOLS)
+        parser.add_argument("--at-zero", action="store_true", help="the machine begins at 0, without offsets")
+        parser.add_argument("--numbers", action="store_true", help="comments with the lines of the original")
+    return expand, height_map

@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: MIT
+"""`passo expand`: parameters, expressions and O words as LinuxCNC has them, judged by its own interpreter."""
+
+import random
+from pathlib import Path
+
+import pytest
+from passo import random_cases
+from passo.cli import main
+from passo.expand.block import shown
+from passo.expand.expander import Options, expand_file, needs_expanding
+from passo.expand.place import ExpandError
+from passo.gcode import Gcode, GcodeError, GcodeSettings, lines
+from passo.toolchain import paths
+
+from benchmarks.gcode_corpus import corpus
+from benchmarks.gcode_expand import compare_expanded, play_expanded
+from benchmarks.gcode_language import language_program
+
+PROGRAMS = 60
+MACHINE = paths.examples / "gcode" / "machine.toml"
+CORPUS = dict(corpus())
+AT_ZERO = Options(at_zero=True, limit=2000)
+
+
+def expanded(folder: Path, text: str, options: Options = AT_ZERO) -> list[str]:
+    """The plain lines of a text."""
+    path = folder / "part.ngc"
+    path.write_text(text)
+    return [line.text for line in expand_file(path, options)]
+
+
+def refusal(folder: Path, text: str, options: Options = AT_ZERO) -> str:
+    """Line and reason."""
+    with pytest.raises(ExpandError) as caught:
+        expanded(folder, text, options)
+    assert str(caught.value) == f"{folder / 'part.ngc'}:{caught.value.place.line}: {caught.value.reason}"
+    return f"{caught.value.place.line}: {caught.value.reason}"
+
+
+@pytest.mark.parametrize("name", CORPUS)
+def test_corpus(name: str) -> None:
+    """Every word in each plane, unit and distance mode moves as in rs274."""
+    program = CORPUS[name]
+    assert compare_expanded(program) == ""
+    played = play_expanded(program)
+    assert not played.refused and len(played.motions) > 5
+
+
+def test_random_programs() -> None:
+    """The same motions as rs274, and the same line refused."""
+    motions = refused = 0
+    for number in range(PROGRAMS):
+        program = language_program(random.Random(f"{random_cases.seed()} {number}"))
+        found = compare_expanded(program)
+        assert not found, "\n".join([f"seed {random_cases.seed()} {number}: {found}", *program])
+        played = play_expanded(program)
+        motions += len(played.motions)
+        refused += played.refused > 0
+    assert motions > 3 * PROGRAMS and refused < PROGRAMS / 2
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("[2 ** 3 ** 2]", 64), ("[-2 ** 2]", 4), ("[1 + 2 * 3]", 7), ("[[1 + 2] * 3]", 9), ("[7 - 2 - 1]", 4),
+        ("[5 mod -3]", 2), ("[-5 mod 3]", 1), ("[1 or 0 and 0]", 0), ("[2 + 3 * 4 gt 13]", 1),
+        ("[1 eq 1.00005]", 1), ("[1 ne 1.0009]", 1), ("round[-2.5]", -3), ("fix[-2.5]", -3),
+        ("fup[-2.5]", -2), ("atan[1]/[-1]", 135),
+        ("sin[30]", 0.5), ("acos[.5]", 60), ("ln[exp[2]]", 2), ("-[1]", -1), ("--1", 1), ("+-.5", -0.5),
+        ("[1/3]", 0.333333), ("[2/3*1000000]", 666666.666667), ("#[1+1]", 0), ("exists[#<none>]", 0),
+    ],
+)  # fmt: skip
+def test_value(tmp_path: Path, text: str, value: float) -> None:
+    """By hand; to a millionth."""
+    assert expanded(tmp_path, f"G0 X{text}") == [f"G0 X{shown(value)}"]
+
+
+def test_plain_lines_stay(tmp_path: Path) -> None:
+    """With their comments; what says nothing goes."""
+    text = "%\nG0 x1 (to the left) ; a\n\n(a comment)\n#1=2\ng1 X [#1] F100 (b)\nM2\nX9\n"
+    wanted = ["G0 x1 (to the left) ; a", "(a comment)", "G1 X2 F100 (b)", "M2"]
+    assert expanded(tmp_path, text) == wanted
+
+
+def test_comments_show_values(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Those of DEBUG and PRINT; PRINT also on standard error."""
+    text = "#1=2\n#<a b>=.5\n(debug, #1 #<A B> #<c>)\n(msg, #1)\n(print,%d#1 %.2f#<ab>)\n"
+    assert expanded(tmp_path, text) == ["(debug, 2.000000 0.500000 ######)", "(msg, #1)", "(print,2 0.50)"]
+    assert main(["expand", str(tmp_path / "part.ngc")]) == 0
+    assert capsys.readouterr().err == "2 0.50\n"
+
+
+def test_subroutine_files(tmp_path: Path) -> None:
+    """They are beside the program; an error names them."""
+    (tmp_path / "slot.ngc").write_text("G0 X99\no<slot> sub\nG0 X#1\no<deep> call [#1+1]\no<slot> endsub\n")
+    (tmp_path / "deep.ngc").write_text("o<deep> sub\nG0 Y#1\no<deep> endsub [5]\nM2\n")
+    text = "o<slot> call [2]\nG0 Z#<_value>\nO<SLOT> call [3]\n"
+    assert expanded(tmp_path, text) == ["G0 X2", "G0 Y3", "G0 Z0", "G0 X3", "G0 Y4"]
+    (tmp_path / "deep.ngc").write_text("o<deep> sub\nG0 Y[1/#5]\no<deep> endsub\n")
+    with pytest.raises(ExpandError, match=r"deep\.ngc:2: word Y: division by zero"):
+        expanded(tmp_path, text)
+
+
+def test_fanuc_subroutines(tmp_path: Path) -> None:
+    """M98 P L and M99; the number of a program is nothing."""
+    text = "O1000\n#1=1\nM98 P20 L2\nG0 Y#1\nM30\nO20\nG0 X#1\n#1=[#1+1]\nM99\n"
+    assert expanded(tmp_path, text) == ["G0 X1", "G0 X2", "G0 Y3", "M30"]
+
+
+# What is written for {}: the folder; WORD: the text of error 20.
+REFUSED = {
+    "G0 X1\no1 while [1]\no1 endwhile": "2: endless? 2,000 lines were executed in loops and subroutines",
+    "o1 sub\no1 call\no1 endsub\no1 call": "2: subroutines are nested deeper than 9, as is an "
+    "endless recursion",
+    "o1 repeat [1e3]": "1: ']' is missing at the end of an expression, before 'e3]'",
+    "G0 X[1/0]": "1: word X: division by zero",
+    "G0 Xsqrt[-1]": "1: word X: SQRT[-1] has no value",
+    "G0 X[1": "1: word X: ']' is missing at the end of an expression, before ''",
+    "G0 X#<none>": "1: word X: #<none> was not set",
+    "G0 X#5602": "1: word X: there is no parameter #5602: 1 to 5601",
+    "G0 X#1.5": "1: word X: a parameter number must be an integer, not 1.5",
+    "#<_metric>=1": "1: #<_metric> is read-only",
+    "#5420=1": "1: #5420 is read-only",
+    "#5221=1": "1: #5221 cannot be set: write G10 L2, G28.1, G30.1 or G92",
+    "o1 endwhile": "1: O1 endwhile has no while",
+    "o1 if [1]\nG0 X1": "1: O1 if has no endif",
+    "o1 while [0]\no2 endwhile": "2: O2 endwhile has no while: O1 while is open",
+    "o1 if [0]\no1 endif\no1 if [0]\no1 endif": "3: O1 if: another construct has this label",
+    "o1 break": "1: O1 break is in no loop of this label",
+    "o1 call": "1: there is no subroutine 1, neither in this file nor as {}/1.ngc",
+    "o1 begin": "1: O: 'begin' is none of elseif, else, endif, endwhile, endrepeat, endsub, sub, call, "
+    "return, if, while, do, repeat, break, continue",
+    "M99": "1: M99 of the main program repeats it without end: write M2 or M30",
+    "G0 X#5063": "1: word X: #5063 cannot be known while expanding: it is the result of a probe",
+    "G0 X#5399": "1: word X: #5399 cannot be known while expanding: it is the result of M66",
+    "G0 X#<_ini[a]b>": "1: word X: #<_ini[a]b> cannot be known while expanding: only the machine has it",
+    "G0 X#1\nG5.1 X1 I1": "2: WORD: G5.1 (LinuxCNC): a spline: let the CAM program write G1, G2 and G3",
+    "G0 X#1\nM104 S200": "2: WORD: M104 (RepRap): this is for 3D printers: leave it out",
+    "G0 E#1": "1: WORD: E0 (RepRap: for 3D printers)",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("text", REFUSED)
+def test_refusal(tmp_path: Path, text: str) -> None:
+    """Names the line, the word and the reason."""
+    wanted = REFUSED[text].format(tmp_path).replace("WORD", str(GcodeError(20)))
+    assert refusal(tmp_path, text) == wanted
+
+
+UNKNOWN = {
+    "G0 Y#5420": "1: word Y: #5420 cannot be known: no absolute motion of X is before",
+    "G91 G0 X1\nG90 G0 Y#<_x>": "2: word Y: #<_x> cannot be known: no absolute motion of X is before",
+    "G0 X1\nG55\nG0 Y#5420": "3: word Y: #5420 cannot be known: no absolute motion of X is before",
+    "G0 X1\nG28 X2\nG0 Y#5420": "3: word Y: #5420 cannot be known: no absolute motion of X is before",
+    "G0 X1\nG53 G0 X0\nG0 Y#5420": "3: word Y: #5420 cannot be known: no absolute motion of X is before",
+    "G0 Y#5221": "1: word Y: #5221 cannot be known: no G10 L2 before has set this offset",
+    "G0 Y#5211": "1: word Y: #5211 cannot be known: no G92.1 is before, or no G92 at a known position",
+    "G0 Y#5161": "1: word Y: #5161 cannot be known while expanding: it is in machine coordinates",
+    "G0 Y#5400": "1: word Y: #5400 cannot be known: no M6 or M61 is before",
+    "G0 Y#5403": "1: word Y: #5403 cannot be known: no G43.1 or G49 is before",
+    "G0 Y#<_feed_override>": "1: word Y: #<_feed_override> cannot be known while expanding: only the "
+    "machine has it",
+}
+
+
+@pytest.mark.parametrize("text", UNKNOWN)
+def test_unknown(tmp_path: Path, text: str) -> None:
+    """What only a machine knows is an error."""
+    assert refusal(tmp_path, text, Options()) == UNKNOWN[text]
+
+
+def test_known(tmp_path: Path) -> None:
+    """From the line on that tells it."""
+    text = "G20 G0 X1\nG91 X1\nG10 L2 P2 X25.4\nG90 Y#5420 Z#5241\nG92 X5\nY#<_x>\nG43.1 Z2\nZ#5403"
+    assert expanded(tmp_path, text.replace("25.4", "1"), Options())[3::2] == ["G90 Y2 Z25.4", "Y5", "Z2"]
+
+
+def test_needs_expanding() -> None:
+    """Other files are run as they are."""
+    for text in (b"#1=2", b"G1 X[1]", b"n5 o100 sub", b"O1000", b"g41 d1", b"G042.1 D3", b"M98 P1", b"X--1"):
+        assert needs_expanding(b"G0 X1\n" + text)
+    for text in (b"(#1 [2] o100 sub) ; G41", b"G4 P1", b"G411", b"G40", b"M9", b"G1 X-1Y+2"):
+        assert not needs_expanding(text)
+
+
+def test_run_expands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """`passo run` takes such a file, and names its lines."""
+    part = tmp_path / "part.ngc"
+    part.write_text("#1=0\no1 while [#1 lt 3]\n#1=[#1+1]\nG1 X#1 F600\no1 endwhile\nM2\n")
+    assert main(["run", str(part), "--machine", str(MACHINE), "--out", str(tmp_path)]) == 0
+    assert "4 lines, 3 chords" in capsys.readouterr().out
+    part.write_text("#1=0\n\nG1 X[1/#1] F600\n")
+    assert main(["run", str(part), "--machine", str(MACHINE), "--out", str(tmp_path)]) == 2
+    assert capsys.readouterr().err == f"{part}:3: word X: division by zero\n"
+
+
+def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """To standard output or a file, with the numbers of the original on request."""
+    part, out = tmp_path / "part.ngc", tmp_path / "plain.nc"
+    part.write_text("#1=2\nG0 A[#1]\n")
+    assert main(["expand", str(part), "--numbers"]) == 0
+    assert capsys.readouterr().out == "G0 A2 ;part.ngc:2\n"
+    assert main(["expand", str(part), "-o", str(out)]) == 0
+    assert capsys.readouterr().out == f"part.ngc: 1 plain lines: {out}\n" and out.read_text() == "G0 A2\n"
+    assert main(["expand", str(part), "--machine", str(MACHINE)]) == 2
+    assert "A2: the machine has the axes X Y Z" in capsys.readouterr().err
+    assert main(["expand", str(tmp_path / "none.ngc")]) == 2
+
+
+def test_nothing_breaks_it(tmp_path: Path) -> None:
+    """Damaged programs end with an error of their own, or as lines that an interpreter takes."""
+    rng, taken = random.Random(f"{random_cases.seed()} fuzz"), 0
+    pieces = [
+        "#",
+        "[",
+        "]",
+        "<",
+        ">",
+        "o1",
+        "sub",
+        "call",
+        "if",
+        "while",
+        "**",
+        "/",
+        "(",
+        ";",
+        "G41",
+        "\r",
+        "9" * 40,
+        "\0",
+    ]
+    options = Options(GcodeSettings(axes=3), at_zero=True, limit=500)
+    for number in range(400):
+        text = "\n".join(language_program(random.Random(f"{random_cases.seed()} {number}"), 4))
+        for _ in range(rng.randint(0, 3)):
+            at = rng.randrange(len(text))
+            text = text[:at] + rng.choice(pieces) + text[at + rng.randint(0, 3) :]
+        try:
+            plain = expanded(tmp_path, text, options)
+        except ExpandError:
+            continue
+        gcode = Gcode(GcodeSettings(axes=3))
+        for line in plain:
+            assert lines(line.encode()) == [line.encode()]
+            gcode.execute(line)
+            list(gcode.actions())
+        taken += 1
+    assert taken > 40
