@@ -13,6 +13,7 @@ import pytest
 from passo import random_cases
 from passo.axis_judge import Marks, faults, shares
 from passo.build import Parameters
+from passo.driver import DriverError
 from passo.native import ffi, planner
 from passo.path import Path, PathAxis, PathSettings
 from passo.path_rounding import Line
@@ -319,6 +320,75 @@ def test_no_pattern_of_lines_leaves_the_core_dry(case: str, polls: int) -> None:
         played = player.finish()
         player.engine.close()
         assert played.positions == steps_at(lines[-1][0], settings) and played.drained == 0
+
+
+class Host(Player):
+    """Polls at a rate that counts what a poll itself takes; adds lines in bursts, with rests between them."""
+
+    def poll(self) -> None:
+        begin = self.engine.clock
+        self.feed.poll()
+        self.engine.run(max(1, self.loop - (self.engine.clock - begin)))
+        self.events.append(self.engine.drain())
+
+
+def fed(
+    lines: list[Line], settings: PathSettings, look_ahead: int, polls: int, burst: int = 0, **queues: int
+) -> float:
+    """Seconds until a path is over, fed by a host; DriverError if the core ran dry or a step is missing."""
+    host = Host(settings, look_ahead, settings.clock_hz // polls, **queues)
+    try:
+        for count, (target, feed) in enumerate(lines, 1):
+            host.add(target, feed)
+            if burst and count % burst == 0:
+                host.rest(0.02)
+        played = host.finish()
+        assert played.positions == steps_at(lines[-1][0], settings) and played.drained == 0
+        return host.engine.clock / settings.clock_hz
+    finally:
+        host.engine.close()
+
+
+# Ramps come down while only lines are sent; lines end while only ramps are; the last ramps wait for company.
+STARVED: list[tuple[str, PathSettings, int, int, int, tuple[int, int]]] = [
+    *(("spiral", FAST, 48, polls, 0, (8, 4)) for polls in (1700, 1750, 1800, 1850, 1900, 1950, 2000)),
+    ("spiral", MACHINE, 4, 600, 0, (4, 6)),
+    ("spiral", MACHINE, 48, 958, 0, (5, 5)),
+    ("zigzag", FAST, 4, 1127, 40, (8, 4)),
+    ("circle of 2 mm", FAST, 8, 1538, 40, (4, 4)),
+]
+
+
+def drawn(rng: random.Random) -> tuple[str, PathSettings, int, int, int, tuple[int, int]]:
+    """Any of these, from 500 to 4,000 polls a second."""
+    kinds = [MACHINE, FAST, FAST, replace(FAST, tolerance=None), replace(FAST, profile="cosine"), SOFT]
+    queues = [(8, 4), (4, 4), (4, 6), (5, 5)]
+    case, settings, look_ahead = rng.choice(list(DENSE)), rng.choice(kinds), rng.choice([4, 8, 16, 48, 300])
+    polls, burst = int(500 * 8 ** rng.random()), rng.choice([0, 7, 40])
+    return case, settings, look_ahead, polls, burst, rng.choice(queues)
+
+
+@pytest.mark.parametrize("number", range(len(STARVED) + 12))
+def test_what_the_core_needs_first_is_sent_first(number: int) -> None:
+    """Lines or ramps, at exactly the stated rate or a higher one, whatever the depths of both queues."""
+    rng = random.Random(random_cases.seed() * 1000 + number)
+    case, settings, look_ahead, polls, burst, log2 = [*STARVED, *(drawn(rng) for _ in range(12))][number]
+    queues = {"line_queue_log2": log2[0], "ramp_queue_log2": log2[1]}
+    host = int(polls * rng.choice([1, rng.uniform(1, 4)])) if number >= len(STARVED) else polls
+    fed(DENSE[case](), replace(settings, polls=polls), look_ahead, host, burst, **queues)
+
+
+@pytest.mark.parametrize("case", ["circle of 2 mm", "circle of 20 mm", "spiral"])
+def test_fewer_polls_mean_a_slower_path(case: str) -> None:
+    """From 200 stated polls a second on; a quarter of what is stated is not enough."""
+    took = []
+    for polls in (2000, 500, 200):
+        settings = replace(FAST, polls=polls)
+        took.append(fed(DENSE[case](), settings, 48, polls))
+        if polls == 200:
+            with pytest.raises(DriverError):
+                fed(DENSE[case](), settings, 48, polls // 4)
+    assert took == sorted(took) and took[-1] > 2 * took[0]
 
 
 def test_short_lines_are_merged_within_the_tolerance() -> None:

@@ -52,7 +52,7 @@ struct passo_path_settings {
 	enum passo_profile profile;  /* linear, cosine, sigmoid or jerk */
 	uint32_t reserve_clocks;     /* minimum time buffered in the core until the path ends; 0: 20 ms */
 	uint32_t polls; /* minimum polls of the feed per second: the path is never faster than they can send
-	                   its lines and ramps; 0: 500 */
+	                   its lines and ramps; 200 or more, 0: 500 */
 	bool unrounded; /* no constant speed around single corners, as in an image without that code */
 };
 
@@ -77,9 +77,9 @@ void passo_path_restart(struct passo_path_planner *path, const int32_t *position
  * Each axis makes its missing steps. False: the positions are on none of them, and nothing has changed. */
 bool passo_path_recover(struct passo_path_planner *path, const int32_t *positions, uint32_t done);
 
-/* Ramps and lines in the core's queues while a frame is prepared, and lines per frame, so that the path is
- * not faster than it can be sent. passo_path_feed_open() sets it; the default is that of a core with default
- * parameters. */
+/* Ramps of a frame, or in the core's queue while it is prepared, if that is fewer; lines in the queue then,
+ * and lines per frame: so that the path is not faster than it can be sent. passo_path_feed_open() sets it;
+ * the default is that of a core with default parameters. */
 void passo_path_pace(
     struct passo_path_planner *path, uint32_t queued, uint32_t lines_queued, uint32_t lines_sent);
 

@@ -40,25 +40,28 @@ uint64_t passo_path_ramp_length(
 }
 
 uint64_t passo_path_detour(const struct passo_path_planner *path, const struct passo_path_law *law,
-    uint64_t from, uint64_t top, uint64_t to)
+    uint64_t from, uint64_t top, uint64_t pause, uint64_t to)
 {
 	const uint64_t up = passo_path_ramp_length(path, law, from, top);
 	const uint64_t down = top > to ? passo_path_ramp_length(path, law, top, to) : 0;
+	const uint64_t level = passo_path_length_in(path, 2 * top, pause);
 
-	return up > UINT64_MAX - down ? UINT64_MAX : up + down;
+	if (up > UINT64_MAX - down || up + down > UINT64_MAX - level)
+		return UINT64_MAX;
+	return up + level + down;
 }
 
 uint64_t passo_path_highest(const struct passo_path_planner *path, const struct passo_path_law *law,
-    uint64_t from, uint64_t to, uint64_t length, uint64_t most)
+    uint64_t from, uint64_t pause, uint64_t to, uint64_t length, uint64_t most)
 {
 	uint64_t low = from, high = most;
 
-	if (most <= from || passo_path_detour(path, law, from, most, to) <= length)
+	if (most <= from || passo_path_detour(path, law, from, most, pause, to) <= length)
 		return passo_path_larger(from, most);
 	while (high - low > (high >> PRECISION) + 1) {
 		const uint64_t middle = low + (high - low) / 2;
 
-		if (passo_path_detour(path, law, from, middle, to) <= length)
+		if (passo_path_detour(path, law, from, middle, pause, to) <= length)
 			low = middle;
 		else
 			high = middle;
@@ -80,7 +83,7 @@ static uint64_t highest_before(
 
 	if (descent->lowest <= end)
 		return descent->lowest;
-	return passo_path_highest(path, &law, end, end, descent->length, descent->lowest);
+	return passo_path_highest(path, &law, end, 0, end, descent->length, descent->lowest);
 }
 
 uint64_t passo_path_soft_reach(struct passo_path_planner *path, uint32_t index)

@@ -15,14 +15,15 @@ struct passo_path_law {
 uint64_t passo_path_ramp_length(
     const struct passo_path_planner *path, const struct passo_path_law *law, uint64_t a, uint64_t b);
 
-/* Length of a ramp up from `from` to `top` and of one down to `to`, if that is lower. */
+/* Length of a ramp up from `from` to `top`, of `pause` ticks there, and of a ramp down to `to`, if that is
+ * lower; UINT64_MAX: no such ramps. */
 uint64_t passo_path_detour(const struct passo_path_planner *path, const struct passo_path_law *law,
-    uint64_t from, uint64_t top, uint64_t to);
+    uint64_t from, uint64_t top, uint64_t pause, uint64_t to);
 
-/* The highest velocity, from `from` to `most`, that can be reached from `from` and left for `to` within a
- * length; `from`, if there is none. */
+/* The highest velocity, from `from` to `most`, that can be reached from `from`, kept for `pause` ticks, and
+ * left for `to` within a length; `from`, if there is none. */
 uint64_t passo_path_highest(const struct passo_path_planner *path, const struct passo_path_law *law,
-    uint64_t from, uint64_t to, uint64_t length, uint64_t most);
+    uint64_t from, uint64_t pause, uint64_t to, uint64_t length, uint64_t most);
 
 /* Highest velocity at the end of an item. */
 uint64_t passo_path_velocity_after(const struct passo_path_planner *path, uint32_t index);

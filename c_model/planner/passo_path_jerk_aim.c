@@ -45,11 +45,10 @@ static void consider(const struct passo_path_planner *path, const struct reach *
 	const uint64_t level = down < reach->length ? reach->length - down : 0;
 	const uint64_t better = choice->top + (choice->top >> PRECISION) + 1;
 
-	const uint64_t paused = passo_path_length_in(path, 2 * reach->lowest, reach->pause);
-	const uint64_t length = reach->length - passo_path_smaller(paused, reach->length);
-
-	if (better <= reach->lowest && passo_path_detour(path, &reach->law, from, better, end) <= length) {
-		choice->top = passo_path_highest(path, &reach->law, from, end, length, reach->lowest);
+	if (better <= reach->lowest
+	    && passo_path_detour(path, &reach->law, from, better, reach->pause, end) <= reach->length) {
+		choice->top = passo_path_highest(
+		    path, &reach->law, from, reach->pause, end, reach->length, reach->lowest);
 		choice->law = reach->law;
 	}
 	if (choice->found && level <= choice->level)

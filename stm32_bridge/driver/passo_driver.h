@@ -119,6 +119,8 @@ bool passo_driver_pins_known(const struct passo *passo, const struct passo_line 
 /* Whether the source may have items and enough entries are free to justify a frame. */
 bool passo_driver_wants_lines(const struct passo *passo);
 bool passo_driver_wants_ramps(const struct passo *passo);
+/* Whether the core holds fewer frames of lines than of ramps: a frame of either lasts for some polls. */
+bool passo_driver_lines_are_urgent(const struct passo *passo);
 /* Retries a source that had no items. */
 void passo_driver_ask_again(struct passo *passo);
 /* Append items from the source to the payload, after its first *length words, as many as fit into queue and

@@ -44,10 +44,20 @@ static bool is_late(const struct passo_path_feed *feed)
 	    && passo_driver_now(feed->passo) - feed->at > BATCH_MICROSECONDS;
 }
 
+/* Before the motion starts, lines make room for others before ramps come down for the last one known. */
+static bool can_send_lines(const struct passo_path_feed *feed)
+{
+	const struct passo *passo = feed->passo;
+
+	return passo->stream == PASSO_STREAM_FILLS && passo->lines != PASSO_SUPPLY_DONE
+	    && passo->snapshot.line_room > 0u && feed->path->sent + 1u < feed->path->added;
+}
+
 static bool give_ramp(void *context, struct passo_ramp *ramp)
 {
 	struct passo_path_feed *feed = context;
-	const bool waits = feed->passo->stream == PASSO_STREAM_FILLS && !feed->hurry;
+	const bool waits =
+	    feed->passo->stream == PASSO_STREAM_FILLS && (!feed->hurry || can_send_lines(feed));
 	const uint64_t left = feed->left >> tick_log2(feed);
 	const uint32_t held = waits || left > UINT32_MAX ? UINT32_MAX : (uint32_t)left;
 
@@ -122,7 +132,7 @@ static void set_pace(const struct passo *passo, struct passo_path_planner *path)
 	if (words == 0u)
 		return;
 	const uint32_t lines = smaller(PASSO_FRAME_PAYLOAD_MAX / words, passo->line_places / 2u);
-	passo_path_pace(path, passo->ramp_places - ramps, passo->line_places - lines, lines);
+	passo_path_pace(path, smaller(passo->ramp_places - ramps, ramps), passo->line_places - lines, lines);
 }
 
 void passo_path_feed_open(struct passo_path_feed *feed, struct passo *passo, struct passo_path_planner *path)
@@ -144,8 +154,8 @@ static enum passo_error begin(struct passo_path_feed *feed)
 	return passo_stream(feed->passo, &source);
 }
 
-/* Whether the stream starts with the items it has: not with a jump alone, before the next item was requested.
- */
+/* Whether the stream starts with the items it has: not with a jump alone, before the next item was requested,
+ * nor while lines can be sent. */
 static bool is_time(struct passo_path_feed *feed)
 {
 	const uint32_t now = passo_driver_now(feed->passo);
@@ -157,7 +167,8 @@ static bool is_time(struct passo_path_feed *feed)
 	const bool hurried = feed->hurry;
 
 	feed->hurry = passo_path_room(feed->path) == 0u || now - feed->added_at >= START_MICROSECONDS;
-	return feed->hurry && (hurried || feed->left > 0u) && feed->ramps > 0u && feed->lines > 0u;
+	return feed->hurry && (hurried || feed->left > 0u) && feed->ramps > 0u && feed->lines > 0u
+	    && !can_send_lines(feed);
 }
 
 enum passo_error passo_path_feed_poll(struct passo_path_feed *feed)

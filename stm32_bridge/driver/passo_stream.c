@@ -80,23 +80,29 @@ bool passo_driver_is_sending(const struct passo *passo)
 	return passo->post != PASSO_POST_NONE || is_packed(passo);
 }
 
-/* Prepares a frame of items, if there are any; ramps come first. */
+/* Prepares a frame of lines or of ramps, if there are any. */
+static enum passo_error pack_items(struct passo *passo, bool lines, size_t *length)
+{
+	const uint16_t address = lines ? PASSO_CHANNEL_LINE : PASSO_CHANNEL_RAMP;
+
+	if (!(lines ? passo_driver_wants_lines(passo) : passo_driver_wants_ramps(passo)))
+		return PASSO_OK;
+	const enum passo_error error =
+	    lines ? passo_driver_take_lines(passo, length) : passo_driver_take_ramps(passo, length);
+	if (error == PASSO_OK && *length != 0u)
+		passo_host_prepare_push(passo->host, (uint16_t)(passo->base + address), *length);
+	return error;
+}
+
+/* First what the core needs first. */
 static enum passo_error pack(struct passo *passo)
 {
-	enum passo_error error = PASSO_OK;
-	uint16_t address = PASSO_CHANNEL_RAMP;
+	const bool lines = passo_driver_lines_are_urgent(passo);
 	size_t length = 0;
 
 	passo_driver_ask_again(passo);
-	if (passo_driver_wants_ramps(passo))
-		error = passo_driver_take_ramps(passo, &length);
-	if (error == PASSO_OK && length == 0u && passo_driver_wants_lines(passo)) {
-		address = PASSO_CHANNEL_LINE;
-		error = passo_driver_take_lines(passo, &length);
-	}
-	if (error == PASSO_OK && length != 0u)
-		passo_host_prepare_push(passo->host, (uint16_t)(passo->base + address), length);
-	return error;
+	const enum passo_error error = pack_items(passo, lines, &length);
+	return error == PASSO_OK && length == 0u ? pack_items(passo, !lines, &length) : error;
 }
 
 static enum passo_error step(struct passo *passo)

@@ -8,12 +8,25 @@ static uint32_t smaller(uint32_t a, uint32_t b)
 	return a < b ? a : b;
 }
 
-/* Number of items that justifies a frame: a full frame, or half of a short queue; any number before the
- * motion starts. */
+/* Items of a frame: as many as fit, or a quarter of a short queue. */
+static uint32_t frame(uint32_t words, uint32_t places)
+{
+	return smaller(PASSO_FRAME_PAYLOAD_MAX / words, (places + 3u) / 4u);
+}
+
+/* Number of items that justifies a frame; any before the motion starts. */
 static uint32_t worthwhile(const struct passo *passo, uint32_t words, uint32_t places)
 {
-	return passo->stream == PASSO_STREAM_FILLS ? 1u
-	                                           : smaller(PASSO_FRAME_PAYLOAD_MAX / words, places / 2u);
+	return passo->stream == PASSO_STREAM_FILLS ? 1u : frame(words, places);
+}
+
+bool passo_driver_lines_are_urgent(const struct passo *passo)
+{
+	const uint32_t lines = (uint32_t)(passo->line_places - passo->snapshot.line_room);
+	const uint32_t ramps = (uint32_t)(passo->ramp_places - passo->snapshot.ramp_room);
+
+	return lines * frame(PASSO_RAMP_WORDS, passo->ramp_places)
+	     < ramps * frame(passo->host->line_words, passo->line_places);
 }
 
 bool passo_driver_wants_lines(const struct passo *passo)
