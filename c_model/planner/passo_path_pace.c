@@ -219,6 +219,17 @@ static struct passo_path_aim calm(
 	return aim;
 }
 
+/* The same, if it stays below all that it passes. */
+static struct passo_path_aim calm_below(
+    const struct passo_path_planner *path, uint64_t ticks, enum passo_path_need need)
+{
+	struct passo_path_aim made = calm(path, ticks, passo_path_pace_need(path, ticks, 2), need);
+
+	if (made.length > 0 && made.kind == PASSO_PATH_DOWN && !is_below(path, &made))
+		made.length = 0;
+	return made;
+}
+
 struct passo_path_aim passo_path_at_pace(
     const struct passo_path_planner *path, const struct passo_path_aim *aim, enum passo_path_need need)
 {
@@ -235,13 +246,20 @@ struct passo_path_aim passo_path_at_pace(
 		if (!ahead.unknown && lowest(&ahead) >= aim->square)
 			return *aim;
 	}
-	const uint64_t used = passo_path_larger(least, path->pace / path->paced) + 1;
-	struct passo_path_aim made = calm(path, used, passo_path_pace_need(path, used, 2), need);
+	/* long enough for a short one behind it, where the profile has long ones: it is followed then */
+	const uint64_t share = path->pace / path->paced;
+	const bool follows = aim->kind == PASSO_PATH_DOWN && ticks > share;
+	const uint64_t all = follows ? passo_path_pace_need(path, 0, 2) : 0;
+	struct passo_path_aim made =
+	    calm_below(path, passo_path_larger(least, passo_path_larger(all, share)) + 1, need);
+
+	if (made.length == 0 && !made.open)
+		made = calm_below(path, passo_path_larger(least, share) + 1, need);
 	if (made.open && need == PASSO_PATH_NO_NEED) {
 		made.length = 0;
 		return made;
 	}
-	if (made.length == 0 || (made.kind == PASSO_PATH_DOWN && !is_below(path, &made)))
+	if (made.length == 0)
 		return *aim;
 	made.open = false;
 	return made;

@@ -9,6 +9,7 @@
 #include "passo_math.h"
 
 #define START_MICROSECONDS 20000u
+#define START_LINES 16u /* that may follow each other at once */
 #define MICROSECONDS_PER_SECOND 1000000u
 #define BATCH_MICROSECONDS 300u
 #define SHORT_MICROSECONDS 2000u /* several times what a line takes to be read and planned */
@@ -44,13 +45,17 @@ static bool is_late(const struct passo_path_feed *feed)
 	    && passo_driver_now(feed->passo) - feed->at > BATCH_MICROSECONDS;
 }
 
-/* Before the motion starts, lines make room for others before ramps come down for the last one known. */
+/* Before the motion starts, lines make room for others, before ramps come down for the last one known: those
+ * of a look-ahead, or a few if the ramps last for the reserve. */
 static bool can_send_lines(const struct passo_path_feed *feed)
 {
 	const struct passo *passo = feed->passo;
+	const struct passo_path_planner *path = feed->path;
+	const bool lasts = feed->left >> tick_log2(feed) >= path->reserve;
 
 	return passo->stream == PASSO_STREAM_FILLS && passo->lines != PASSO_SUPPLY_DONE
-	    && passo->snapshot.line_room > 0u && feed->path->sent + 1u < feed->path->added;
+	    && passo->snapshot.line_room > 0u && path->sent + 1u < path->added
+	    && feed->lines < (lasts ? smaller(path->capacity, START_LINES) : path->capacity);
 }
 
 static bool give_ramp(void *context, struct passo_ramp *ramp)
