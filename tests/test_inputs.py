@@ -32,11 +32,13 @@ NAMES = ("limit", "other limit", "alarm", "probe", "estop", "abort")
 class Machine:
     """A core, and what its pins have done."""
 
-    def __init__(self, engine: Engine | PairEngine, rng: random.Random) -> None:
+    def __init__(
+        self, engine: Engine | PairEngine, rng: random.Random, parameters: Parameters = PARAMETERS
+    ) -> None:
         self.engine, self.rng = engine, rng
         self.link = Link(engine)
-        self.channel = Channel(self.link, PARAMETERS)
-        self.axes = PARAMETERS.axes
+        self.channel = Channel(self.link, parameters)
+        self.axes = parameters.axes
         self.events = np.zeros(1, EVENT)
         self.pins: dict[str, int] = {}
 
@@ -203,12 +205,14 @@ def latch_in_motion(machine: Machine) -> None:
     machine.clear()
 
 
+KINDS: list[Callable[[Machine], None]] = [one_round, one_round, into_a_switch, latch_in_motion]
+
+
 def play(machine: Machine, rounds: int) -> None:
     """Rounds of all kinds."""
-    kinds: list[Callable[[Machine], None]] = [one_round, one_round, into_a_switch, latch_in_motion]
     for number in range(rounds):
         print(f"round {number}, clock {machine.engine.clock}")
-        kinds[number % len(kinds)](machine)
+        KINDS[number % len(KINDS)](machine)
 
 
 @pytest.mark.parametrize("number", range(4))

@@ -1,22 +1,34 @@
 # SPDX-License-Identifier: MIT
 """A sample of `make verify ONLY=mutants`: that judges see mutants, and that a score can be 0."""
 
+import random
 import subprocess
 import tempfile
 from pathlib import Path
 
 import pytest
 from passo import random_cases
+from passo.engine import model_engine
 from passo.toolchain import environment
 
-from verify.mutants import equivalence, formal_judge
+from verify.mutants import (
+    engine_judge,
+    equivalence,
+    formal_judge,
+    frames_judge,
+    inputs_judge,
+    motions_judge,
+    outputs_judge,
+    registers_judge,
+)
 from verify.mutants.c_equal import object_code
 from verify.mutants.c_judge import Worker
 from verify.mutants.c_mutate import DECLARED
 from verify.mutants.c_source import drawn as drawn_c
+from verify.mutants.engine_judge import Check
 from verify.mutants.netlist import PLAIN, Core, Mutant, drawn
 from verify.mutants.netlist import library as verilated
-from verify.soak.parts import SETS
+from verify.soak.parts import MACHINE, SETS
 from verify.soak.program import build
 
 SEED = random_cases.seed()
@@ -65,6 +77,33 @@ def test_a_judge_that_is_switched_off_scores_0(sample: tuple[list[Mutant], Path]
     mutants, library = sample
     some = [mutant.number for mutant in mutants][:: len(mutants) // 8]
     assert killed(library, some, "--off") == set()
+
+
+@pytest.mark.parametrize(
+    ("check", "module"),
+    [
+        (frames_judge.CHECK, "passo_verdict"),
+        (motions_judge.CHECK, "passo_timescale"),
+        (registers_judge.CHECKS[0], "passo_rules"),
+    ],
+)
+def test_a_check_in_python_kills_a_mutant(
+    check: Check, module: str, sample: tuple[list[Mutant], Path]
+) -> None:
+    """One of a module whose work it checks; it finds no fault with the core itself."""
+    mutants, library = sample
+    numbers = [0, *(mutant.number for mutant in mutants if mutant.module == module)]
+    found = [bool(engine_judge.broken(SAMPLE, library, number, str(SEED), check)) for number in numbers]
+    print(f"seed {SEED}: {found}")
+    assert not found[0]
+    assert any(found)
+
+
+@pytest.mark.parametrize("check", [inputs_judge.CHECK, outputs_judge.CHECK])
+def test_a_check_of_a_machine_finds_no_fault_with_the_core(check: Check) -> None:
+    """On the model: that it can fail is shown by its mutants."""
+    with model_engine(MACHINE) as engine:
+        check.play(engine, MACHINE, random.Random(SEED))
 
 
 def test_a_promise_kills_a_mutant() -> None:

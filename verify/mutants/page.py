@@ -18,6 +18,7 @@ from verify.mutants.netlist import Mutant
 PAGE = paths.reference / "mutants.md"
 REASONS = Path(__file__).parent / "reasons.toml"
 NO_REASON = "no property covers it yet"
+JUDGES = ("pins", "motions", "frames", "registers", "proofs")  # of the RTL
 
 
 @dataclass
@@ -53,15 +54,11 @@ class Score:
 
 
 def _judge_of(killed: str) -> str:
+    if killed in JUDGES:
+        return killed
     if killed.startswith("proof"):
         return "proofs"
-    return (
-        "registers"
-        if killed == "registers"
-        else "tests"
-        if ".py" in killed or "ends with" in killed
-        else "pins"
-    )
+    return "tests" if ".py" in killed or "ends with" in killed else "pins"
 
 
 def _reasons() -> list[tuple[re.Pattern[str], str, bool]]:
@@ -135,9 +132,6 @@ def show_table(rtl: Sequence[Score], c: Sequence[Score]) -> None:
                 *(str(live), score.shown),
             )
         console.print(made)
-
-
-JUDGES = ("pins", "registers", "proofs")
 
 
 def _rtl_table(all_scores: Sequence[Score]) -> str:

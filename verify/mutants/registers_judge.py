@@ -4,20 +4,15 @@
 What the registers are is written in spec/passo.rdl.
 """
 
-import os
 import random
-from collections.abc import Callable, Sequence
-from pathlib import Path
 
-from passo.engine import Engine
-from passo.failure import Failure
 from passo.link import Link
+from passo.register_table import Register
 from passo.registers import Verdict
 
-from tests.test_register_table import WORDS
+from tests.test_register_table import GREATEST, NOT_0, WORDS
 from tests.test_register_table import Core as Table
-from verify.mutants.fates import Fates
-from verify.mutants.netlist import Core, Mutant
+from verify.mutants.engine_judge import Check
 
 # What takes part in the answer to a frame.
 MODULES = (
@@ -33,8 +28,8 @@ MODULES = (
     *("passo_core", "passo_channel", "passo_encoders", "passo_outputs", "passo_verdict", "passo_link_bus"),
     *("passo_tables", "passo_encoder_axis", "passo_positions"),
 )
-NAME = "registers"
-MORE = "registers kept"
+# Registers with a field that does not take each sum of its bits.
+CHOICES = {"RUN", "CHANNEL_TRIGGER", "CHANNEL_COMPARE_PULSE", "CHANNEL_FOLLOW"}
 PLACES = 2  # addresses of a register that are tried
 BITS = 3  # of each word that are tried
 HOLES = 12  # addresses without a register that are tried
@@ -73,6 +68,14 @@ def check(table: Table, rng: random.Random) -> None:
     table.check_pushing()
 
 
+def some_value(table: Table, register: Register, rng: random.Random) -> int:
+    """A value that a register takes: any bits, or up to its greatest value."""
+    if register.name in GREATEST:
+        return rng.randint(int(register.name in NOT_0), GREATEST[register.name])
+    bits = [1 << n for n in range(32) if table.taken(register) >> n & 1]
+    return rng.choice(bits) | (0 if register.name in CHOICES else rng.getrandbits(32) & sum(bits))
+
+
 def check_keeping(table: Table, rng: random.Random) -> None:
     """A register shows what was written to it last, whatever is written to others.
 
@@ -82,8 +85,7 @@ def check_keeping(table: Table, rng: random.Random) -> None:
     kept = {address: register for address, register in table.registers if {"r", "w"} <= set(register.access)}
     shown = {}
     for address in rng.sample(sorted(kept), len(kept)):
-        bits = [1 << n for n in range(32) if table.taken(kept[address]) >> n & 1]
-        shown[address] = rng.choice(bits)
+        shown[address] = some_value(table, kept[address], rng)
         assert table.write(address, shown[address]) == Verdict.OK, f"0x{address:03X}"
     for address, register in table.registers:  # what is not shown changes nothing that is
         if "w" in register.access and address not in kept:
@@ -106,50 +108,17 @@ def check_more(table: Table, rng: random.Random) -> None:
     table.check_limits()
 
 
-def broken(core: Core, library: Path, number: int, seed: int, name: str) -> str:
-    """What a mutant breaks; it is tried in a process of its own."""
-    read, write = os.pipe()
-    process = os.fork()
-    if process == 0:
-        os.environ["PASSO_MUTANT"] = str(number)
-        says = ""
-        try:
-            with Engine(library, core.parameters) as engine:
-                checks = check_more if name == MORE else check
-                checks(Table(Link(engine), core.parameters), random.Random(f"{seed} {number}"))
-        except AssertionError as failed:
-            says = str(failed).splitlines()[0] or "not as in the table"
-        except Exception as failed:  # a link that is broken
-            says = f"{type(failed).__name__}: {failed}"
-        os.write(write, says.encode()[:500])
-        os._exit(0)
-    os.close(write)
-    with os.fdopen(read, "rb") as pipe:
-        says = pipe.read().decode()
-    os.waitpid(process, 0)
-    return says
-
-
-def judge(
-    core: Core,
-    mutants: Sequence[Mutant],
-    fates: Fates,
-    library: Path,
-    seed: int,
-    show: Callable[[str], None],
-    name: str,
-) -> None:
-    """Let the table judge the mutants that live: some bits, or all of them."""
-    takes_part = mutants if name == MORE else [mutant for mutant in mutants if mutant.module in MODULES]
-    waiting = [mutant for mutant in takes_part if fates.get(mutant.name).waits(name)]
-    if waiting and (says := broken(core, library, 0, seed, name)):
-        raise Failure(f"the table finds fault with the core itself: {says}")
-    for mutant in waiting:
-        fate = fates.get(mutant.name)
-        says = broken(core, library, mutant.number, seed, name)
-        fate.tried = [*(fate.tried or []), name]
-        if says:
-            fate.killed, fate.says = NAME, says
-        fates.save()
-    living = sum(fates.get(mutant.name).lives for mutant in waiting)
-    show(f"{core.name}: {name}: {living} of {len(waiting)} live")
+CHECKS = (
+    Check(
+        "registers",
+        "registers",
+        lambda engine, parameters, rng: check(Table(Link(engine), parameters), rng),
+        MODULES,
+    ),
+    Check(
+        "registers kept",
+        "registers",
+        lambda engine, parameters, rng: check_more(Table(Link(engine), parameters), rng),
+        MODULES,
+    ),
+)

@@ -15,7 +15,22 @@ from collections.abc import Collection, Sequence
 
 from passo.console import console
 
-from verify.mutants import c_equal, c_judge, c_source, equivalence, formal_judge, registers_judge, rtl_judge
+from verify.mutants import (
+    c_equal,
+    c_judge,
+    c_source,
+    engine_judge,
+    equivalence,
+    formal_judge,
+    frames_judge,
+    inputs_judge,
+    lines_judge,
+    motions_judge,
+    outputs_judge,
+    registers_judge,
+    rtl_judge,
+    timings_judge,
+)
 from verify.mutants.fates import Fates, hash_of
 from verify.mutants.netlist import CORES, MOST, Core, drawn, first_of, library
 from verify.mutants.page import Score, scores, show_table, write
@@ -41,14 +56,19 @@ def run_core(core: Core, seed: int, each: int, only: Collection[str]) -> list[Sc
     verilated = library(core)
     pins = rtl_judge.Pins(core, chosen, fates, soak, verilated, seed, _say)
     first, second, third = rtl_judge.ROUNDS[core.name]
+    some, all_registers = registers_judge.CHECKS
     pins.judge(first)
+    for check in (
+        *(frames_judge.CHECK, some, motions_judge.CHECK, timings_judge.CHECK),
+        *(lines_judge.CHECK, inputs_judge.CHECK, outputs_judge.CHECK),
+    ):
+        engine_judge.judge(core, chosen, fates, verilated, seed, _say, check)
+    pins.judge(second)
     equivalence.judge(core, chosen, fates, _say, equivalence.MODULE)
     formal_judge.judge(core, chosen, fates, _say, formal_judge.LIMIT)
-    pins.judge(second)
-    equivalence.judge(core, chosen, fates, _say, equivalence.CORE)
+    engine_judge.judge(core, chosen, fates, verilated, seed, _say, all_registers)
     pins.judge(third)
-    for name in (registers_judge.NAME, registers_judge.MORE):
-        registers_judge.judge(core, chosen, fates, verilated, seed, _say, name)
+    equivalence.judge(core, chosen, fates, _say, equivalence.CORE)
     return scores(chosen, fates)
 
 

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: MIT
+"""Inputs as judge: events at the pins of a machine, as tests/test_inputs.py has them, levels, watchdog."""
+
+import random
+
+from passo import registers as r
+from passo.build import Parameters
+from passo.engine import Engine
+from passo.registers import Cause, TriggerAction, TriggerSource
+
+from tests.test_inputs import KINDS, LATCH, Machine
+from verify.mutants.engine_judge import Check
+
+MODULES = (
+    *("passo_machine", "passo_estop", "passo_watchdog", "passo_inputs", "passo_input", "passo_limits"),
+    *("passo_trigger", "passo_positions", "passo_core", "passo_channel", "passo_axis_registers"),
+)
+LEVELS = ("limit_low", "limit_high", "home", "alarm")
+UNIT = 1 << 16  # clocks of the watchdog
+SETTLES = 400  # clocks until any of these filters knows its level
+
+
+def check_levels(machine: Machine) -> None:
+    """Each input, with any polarity, is read as it is; a flag stays until it is cleared."""
+    rng, axes, base = machine.rng, machine.axes, machine.channel.base
+    machine.link.write(r.ADDRESS_INPUT_FILTER, rng.choice((0, 3, 60)))
+    inverted = [rng.getrandbits(4) for _ in range(axes)]
+    for axis, bits in enumerate(inverted):
+        machine.link.write(machine.channel.axis_base(axis) + r.AXIS_INPUTS, bits)
+    for _ in range(3):
+        expected = 0
+        for n, pin in enumerate(LEVELS):
+            level = rng.getrandbits(axes)
+            machine.set(pin, level)
+            active = level ^ sum((bits >> n & 1) << axis for axis, bits in enumerate(inverted))
+            expected |= active << 8 * n
+        machine.engine.run(SETTLES)
+        machine.link.write(base + r.CHANNEL_INPUT_CLEAR, 0xFFFFFFFF)
+        machine.engine.run(10)
+        levels, flags = machine.link.read(base + r.CHANNEL_INPUT_LEVELS, 2)
+        assert levels == expected, f"INPUT_LEVELS {levels:08X} instead of {expected:08X}"
+        assert flags == expected, f"INPUT_FLAGS {flags:08X} instead of {expected:08X}"
+    for axis in range(axes):
+        machine.link.write(machine.channel.axis_base(axis) + r.AXIS_INPUTS, 0)
+    machine.clear()
+    machine.engine.run(SETTLES)
+    seen = machine.link.read(base + r.CHANNEL_INPUT_LEVELS, 2)
+    assert seen[0] == 0 and seen[1] & expected == expected, "flags are kept"
+    machine.link.write(base + r.CHANNEL_INPUT_CLEAR, 0xFFFFFFFF)
+
+
+def check_trigger(machine: Machine) -> None:
+    """Any edge of any source: no glitch fires it, and it latches the positions of its clock."""
+    rng, link, base = machine.rng, machine.link, machine.channel.base
+    source, pin = rng.choice(((TriggerSource.HOME, "home"), (TriggerSource.PROBE, "probe")))
+    axis = 0 if pin == "probe" else rng.randrange(machine.axes)
+    falling, length = bool(rng.getrandbits(1)), rng.choice((1, 6, 45))
+    before, after = falling << axis, (not falling) << axis
+    link.write(r.ADDRESS_INPUT_FILTER, length)
+    machine.set(pin, before)
+    word = r.ChannelTriggerWord(
+        source=source, axis=axis, falling=falling, action=TriggerAction.LATCH, arm=True
+    )
+    link.write(base + r.CHANNEL_TRIGGER, word.pack())
+    machine.engine.run(SETTLES)
+    machine.set(pin, after)
+    machine.engine.run(length)
+    machine.set(pin, before)
+    machine.move([rng.choice((-8, 8)) for _ in range(machine.axes)], rng.randint(4, 9))
+    state = r.ChannelTriggerStateWord.unpack(link.read(base + r.CHANNEL_TRIGGER_STATE, 1)[0])
+    assert (state.armed, state.fired, state.source_active) == (True, False, falling), f"{state}"
+    at = machine.engine.clock
+    machine.set(pin, after)
+    machine.engine.run(length + 300)
+    words = link.read(base + r.CHANNEL_TRIGGER_POSITION_BASE, machine.axes)
+    state = r.ChannelTriggerStateWord.unpack(link.read(base + r.CHANNEL_TRIGGER_STATE, 1)[0])
+    assert (state.armed, state.fired) == (False, True), f"{state}"
+    machine.channel.abort()
+    machine.check_position()
+    latched = [word - (word >> 31 << 32) for word in words]
+    assert latched == machine.positions(at + LATCH + length), "the latched positions"
+    machine.clear()
+
+
+def check_watchdog(machine: Machine) -> None:
+    """Silence stops a motion after its time, and then disables the drives."""
+    for axis in range(machine.axes):
+        machine.link.write(machine.channel.axis_base(axis) + r.AXIS_ENABLE, 1)
+    word = r.WatchdogWord(stop_after=1, disable_after=1)
+    machine.link.write(machine.channel.base + r.CHANNEL_STOP_SLEW, 1 << 16)
+    machine.move([8] * machine.axes, 40)
+    machine.link.write(r.ADDRESS_WATCHDOG, word.pack())
+    fed = machine.engine.clock
+    machine.engine.drain()
+    left = 2 * UNIT + 1000
+    while left > 0:
+        left -= machine.engine.run(left)
+    events = machine.engine.drain()
+    stopped = events["clock"][events["running"] == 0][:1]
+    assert len(stopped) and abs(int(stopped[0]) - fed - UNIT) < 1200, "when the watchdog stops the motion"
+    disabled = events["clock"][events["enable"] == 0][:1]
+    assert len(disabled) and abs(int(disabled[0]) - fed - 2 * UNIT) < 600, "when it disables the drives"
+    assert machine.channel.state().cause == Cause.WATCHDOG
+    machine.link.write(r.ADDRESS_WATCHDOG, 0)
+    machine.clear()
+
+
+def check(engine: Engine, parameters: Parameters, rng: random.Random) -> None:
+    """Some rounds of all kinds.
+
+    Raises:
+        AssertionError: Something is not as it is known to be.
+    """
+    if not parameters.inputs:
+        return
+    machine = Machine(engine, rng, parameters)
+    check_levels(machine)
+    for kind in [*KINDS, check_trigger, check_trigger, check_trigger]:
+        kind(machine)
+    check_watchdog(machine)
+
+
+CHECK = Check("inputs", "motions", check, MODULES)

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: MIT
+"""Outputs as judge: levels on their clock, and the power on each clock, as docs/architecture.md says."""
+
+import random
+
+import numpy as np
+from passo import registers as r
+from passo.build import Parameters
+from passo.engine import Engine
+from passo.registers import Cause
+
+from tests.helpers.closed_form import ONE, Line, Ramp, substep_clocks
+from tests.helpers.motions import to_line, to_ramp
+from verify.mutants.engine_judge import Check
+from verify.mutants.motions_judge import Motions
+
+MODULES = (
+    *("passo_outputs", "passo_output_registers", "passo_raster", "passo_changes", "passo_power"),
+    *("passo_pwm", "passo_core", "passo_channel"),
+)
+FULL = 1 << 24  # of the phase of a period
+PITCHES = 6  # values of a raster line
+
+
+def pulses(power: int, step: int, clocks: int, cost: int) -> np.ndarray:
+    """The level of the power on each clock from its change on, when an on-clock has this cost."""
+    duty = (power + (power >> 15)) << 8
+    begins = np.diff(np.arange(clocks, dtype=np.int64) * step // FULL, prepend=0) > 0
+    level = np.zeros(clocks, np.int8)
+    credit = 0
+    for k in range(clocks):
+        credit += duty if k == 0 or begins[k] else 0
+        if credit > 0:
+            level[k] = 1
+            credit -= cost
+    return level
+
+
+class Outputs(Motions):
+    """A core whose outputs are judged."""
+
+    def level(self, pin: str, number: int, begin: int, end: int) -> np.ndarray:
+        """Of a pin on each clock."""
+        clocks = self.events["clock"].astype(np.int64)
+        at = np.searchsorted(clocks, np.arange(begin, end), side="right") - 1
+        return (self.events[pin].astype(np.int64) >> number & 0xFF)[at]
+
+    def lines(self) -> None:
+        """A line of a power, one in proportion to the speed, one of a raster, with a lag or without one."""
+        rng, channel = self.rng, self.channels[0]
+        axes = self.parameters.axes
+        step = rng.randint(1 << 16, 1 << 20)
+        gap = rng.randint(24, 40)
+        velocity = ONE // gap
+        lag = rng.choice((0, rng.randint(1, 90)))
+        reference = (velocity >> 16) + rng.getrandbits(rng.choice((20, 27, 29)))
+        pitch = rng.randint(2, 9)
+        self.write(channel, r.CHANNEL_OUTPUT_LEVELS, rng.getrandbits(8), lag, step, reference, pitch)
+        values = [rng.randint(1, 127) + 128 * (n % 2) for n in range(4 * -(-PITCHES // 4))]
+        packed = np.array(values, np.uint8).view("<u4").tolist()
+        self.link.push(channel.base + r.CHANNEL_RASTER, packed)
+        substeps = [rng.randint(20, 40), rng.randint(60, 90), pitch * PITCHES]
+        powers = [rng.randint(1, 65535), rng.randint(1, 65535), 0]
+        words = [
+            r.LineOutputWord(
+                levels=rng.getrandbits(8) ^ n, power=powers[n], proportional=n == 1, raster=n == 2
+            )
+            for n in range(3)
+        ]
+        lines = [Line(m, (m,) * axes, last=n == 2) for n, m in enumerate(substeps)]
+        ticks = sum(substeps) * gap // self.tick + 2
+        ramps = [Ramp(velocity, 0), Ramp(velocity, ticks, last=True)]
+        self.link.write(r.ADDRESS_RUN, 0)
+        channel.push_lines([to_line(line) for line in lines], words)
+        channel.push_ramps([to_ramp(ramp) for ramp in ramps])
+        self.events = self.engine.drain()[-1:]
+        channel.start()
+        self.wait(channel)
+        begin, end = self.runs(channel)
+        clocks = [begin + n + lag for n in substep_clocks(ramps, self.tick.bit_length() - 1)]
+        firsts = [clocks[sum(substeps[:n])] for n in range(3)]
+        for n, first in enumerate(firsts):
+            until = min(firsts[n + 1] if n < 2 else clocks[sum(substeps) - 1], end)
+            seen = self.level("outputs", 8 * channel.number, first, until)
+            assert (seen == words[n].levels).all(), f"levels of line {n}"
+        self.check_power(firsts[0], firsts[1], powers[0], step)
+        for n in range(PITCHES):
+            at = [clocks[min(substeps[0] + substeps[1] + pitch * k, len(clocks) - 1)] for k in (n, n + 1)]
+            self.check_power(at[0], min(at[1], end), 257 * values[n], step)
+        self.check_proportional(firsts[1], firsts[2], powers[1], step, (step * reference << 16) // velocity)
+        assert not self.level("power", channel.number, end, end + 20).any() & 1, "power at rest"
+        self.check_end(channel, Cause.NONE)
+
+    def check_power(self, begin: int, end: int, power: int, step: int) -> None:
+        """A power that does not depend on the speed."""
+        due = pulses(power, step, end - begin, step)
+        assert (self.level("power", 0, begin, end) & 1 == due).all(), f"power {power} of step {step}"
+
+    def check_proportional(self, begin: int, end: int, power: int, step: int, cost: int) -> None:
+        """A clock costs as much as the speed says; the quotient is rounded."""
+        level = self.level("power", 0, begin, end) & 1
+        assert any(
+            (level == pulses(power, step, end - begin, max(step, near))).all()
+            for near in (cost, cost - 1, cost + 1)
+        ), f"power {power} at a cost of {cost}"
+
+
+def check(engine: Engine, parameters: Parameters, rng: random.Random) -> None:
+    """Some motions with outputs.
+
+    Raises:
+        AssertionError: Something is not as it is known to be.
+    """
+    if not parameters.outputs:
+        return
+    outputs = Outputs(engine, parameters, rng)
+    outputs.set_up()
+    for _ in range(3):
+        outputs.lines()
+
+
+CHECK = Check("outputs", "motions", check, MODULES)
