@@ -13,13 +13,13 @@ from passo.registers import Verdict
 from verify.mutants.engine_judge import Check
 
 FRAMES = 70
-WORD = 0xFFFFFFFF
 READ, WRITE, PUSH = r.Operation.READ, r.Operation.WRITE, r.Operation.PUSH
 COUNTED = (  # in the order of the bytes of REFUSALS_0 and REFUSALS_1
     *(Verdict.BAD_CRC, Verdict.BAD_LENGTH, Verdict.BAD_OPERATION, Verdict.UNKNOWN_ADDRESS),
     *(Verdict.READ_ONLY, Verdict.QUEUE_FULL, Verdict.BUSY, Verdict.BAD_VALUE),
 )
 NO_REGISTER = 0x00F
+HALF = 1 << 31  # the control word of a ramp to the greatest velocity, if the next word is 0
 
 
 @dataclass
@@ -93,8 +93,17 @@ class Frames:
             return Sent(PUSH, base + r.CHANNEL_LINE, words, verdict, lines=count)
         if kind in (6, 7):
             count = rng.randint(1, 4)
-            ramp = [0, rng.randint(1, 1 << 31) - 1, rng.getrandbits(32), rng.getrandbits(16), 0]
+            control = rng.getrandbits(15) << 16 | rng.getrandbits(2) << r.RAMP_CONTROL_SHAPE_LSB
+            ramp = [control, rng.getrandbits(32), rng.getrandbits(32), rng.getrandbits(16), 0]
+            if rng.random() < 0.1:
+                ramp[:2] = [HALF, 0]
             words = ramp * count
+            if rng.random() < 0.3:
+                undefined = control | 1 << rng.choice((3, rng.randint(6, 15)))
+                bad = rng.choice(
+                    ([HALF | 1 << rng.randint(16, 30)], [HALF, 1 << rng.randrange(32)], [undefined])
+                )
+                return Sent(PUSH, base + r.CHANNEL_RAMP, [*bad, *ramp[len(bad) :]], Verdict.BAD_VALUE)
             if rng.random() < 0.3:
                 words = words[: -rng.randint(1, 4)]
                 verdict = Verdict.QUEUE_FULL if count > ramps else Verdict.BAD_LENGTH
@@ -160,6 +169,19 @@ class Frames:
             assert miso[before:] == [ack] * (len(mosi) - before), f"{where}: {verdict.name} is due"
         self.note(sent, sequence, verdict)
 
+    def cut(self) -> None:
+        """A frame that ends before its CRC does nothing."""
+        rng = self.rng
+        words = [WRITE << 28 | rng.getrandbits(8) << 20 | 1 << 12 | r.ADDRESS_RUN, 0, rng.getrandbits(32)]
+        mosi = b"".join(word.to_bytes(4, "big") for word in words)
+        self.engine.select(True)
+        self.engine.run(4)
+        self.engine.pace(1, 1)
+        self.engine.exchange(mosi[: rng.randrange(len(mosi))], 2)
+        self.engine.run(4)
+        self.engine.select(False)
+        self.engine.run(20)
+
     def note(self, sent: Sent, sequence: int, verdict: Verdict) -> None:
         """What it has changed."""
         if verdict in self.refused:
@@ -184,7 +206,9 @@ def check(engine: Engine, parameters: Parameters, rng: random.Random) -> None:
         AssertionError: A reply is not as it is known to be.
     """
     frames = Frames(engine, parameters, rng)
-    for _ in range(FRAMES):
+    for number in range(FRAMES):
+        if number % 8 == 7:
+            frames.cut()
         frames.exchange()
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Long lines as judge: of all sizes until an abort, and one of so many substeps that the upper bits count."""
+"""Lines as judge: of all sizes until an abort, and one of 2^15 substeps, which the upper bits count."""
 
 import random
 

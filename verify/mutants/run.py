@@ -29,6 +29,7 @@ from verify.mutants import (
     outputs_judge,
     registers_judge,
     rtl_judge,
+    shapes_judge,
     timings_judge,
 )
 from verify.mutants.fates import Fates, hash_of
@@ -56,17 +57,16 @@ def run_core(core: Core, seed: int, each: int, only: Collection[str]) -> list[Sc
     verilated = library(core)
     pins = rtl_judge.Pins(core, chosen, fates, soak, verilated, seed, _say)
     first, second, third = rtl_judge.ROUNDS[core.name]
-    some, all_registers = registers_judge.CHECKS
     pins.judge(first)
     for check in (
-        *(frames_judge.CHECK, some, motions_judge.CHECK, timings_judge.CHECK),
-        *(lines_judge.CHECK, inputs_judge.CHECK, outputs_judge.CHECK),
+        *(frames_judge.CHECK, motions_judge.CHECK, timings_judge.CHECK, lines_judge.CHECK),
+        *(shapes_judge.CHECK, inputs_judge.CHECK, outputs_judge.CHECK),
+        *registers_judge.CHECKS,
     ):
         engine_judge.judge(core, chosen, fates, verilated, seed, _say, check)
     pins.judge(second)
     equivalence.judge(core, chosen, fates, _say, equivalence.MODULE)
     formal_judge.judge(core, chosen, fates, _say, formal_judge.LIMIT)
-    engine_judge.judge(core, chosen, fates, verilated, seed, _say, all_registers)
     pins.judge(third)
     equivalence.judge(core, chosen, fates, _say, equivalence.CORE)
     return scores(chosen, fates)

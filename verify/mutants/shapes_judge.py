@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: MIT
+"""Shaped ramps as judge: motions of all channels together, which share the tables; each step on its clock."""
+
+import random
+
+from passo import registers as r
+from passo.build import Parameters
+from passo.engine import Engine
+from passo.registers import Cause
+
+from tests.helpers.closed_form import substep_clocks
+from verify.mutants.engine_judge import Check
+from verify.mutants.motions_judge import Motions
+
+ROUNDS = 5
+MODULES = (
+    *("passo_tables", "passo_interpolate", "passo_profile", "passo_path", "passo_core", "passo_positions"),
+    *("passo_ramp", "passo_ramp_numbers", "passo_ramp_queue", "passo_ramp_schedule", "passo_ramp_strobes"),
+    *("passo_ramp_tick", "passo_memory", "passo_channel", "passo_line_queue", "passo_motion"),
+)
+
+
+class Shapes(Motions):
+    """A core whose channels move together."""
+
+    def together(self) -> None:
+        """Any motion on each channel; they begin when they are prepared."""
+        self.link.write(r.ADDRESS_RUN, 0)
+        most = min(9, 1 << self.parameters.ramp_queue_log2)
+        drawn = [self.draw(most) for _ in self.channels]
+        for channel, (lines, ramps) in zip(self.channels, drawn, strict=True):
+            self.queue(channel, lines, ramps)
+        self.events = self.engine.drain()[-1:]
+        self.link.write(r.ADDRESS_RUN, (1 << len(self.channels)) - 1)
+        for channel in self.channels:
+            self.wait(channel)
+        for channel, (lines, ramps) in zip(self.channels, drawn, strict=True):
+            begin, end = self.runs(channel)
+            assert end - begin == sum(ramp.ticks for ramp in ramps) * self.tick, "the profile lasts"
+            clocks = substep_clocks(ramps, self.tick.bit_length() - 1)
+            self.check_steps(channel, lines, [begin + n for n in clocks])
+            self.check_positions(channel, [0] * self.parameters.axes)
+        for channel in self.channels:
+            self.check_end(channel, Cause.NONE)
+
+
+def check(engine: Engine, parameters: Parameters, rng: random.Random) -> None:
+    """Some motions.
+
+    Raises:
+        AssertionError: A step is not where it is known to be.
+    """
+    shapes = Shapes(engine, parameters, rng)
+    shapes.set_up()
+    for _ in range(ROUNDS):
+        shapes.together()
+
+
+CHECK = Check("shapes", "motions", check, MODULES)
