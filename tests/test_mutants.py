@@ -12,6 +12,7 @@ from passo.engine import model_engine
 from passo.toolchain import environment
 
 from verify.mutants import (
+    corners_judge,
     engine_judge,
     equivalence,
     formal_judge,
@@ -88,6 +89,7 @@ def test_a_judge_that_is_switched_off_scores_0(sample: tuple[list[Mutant], Path]
         (frames_judge.CHECK, ("header", "verdict", "reply", "link", "link_bus")),
         (motions_judge.CHECK, ("timescale", "motion", "dda", "profile", "axis")),
         (shapes_judge.CHECK, ("ramp", "interpolate", "ramp_tick", "path", "tables")),
+        (corners_judge.CHECK, ("motion", "ramp", "timescale", "core", "channel")),
         (lines_judge.CHECK, ("line", "dda", "lines", "line_queue")),
         (timings_judge.CHECK, ("axis", "axis_settings", "axes")),
         (registers_judge.CHECKS[0], ("rules", "registers", "header", "verdict", "link_bus")),

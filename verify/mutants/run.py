@@ -19,6 +19,7 @@ from verify.mutants import (
     c_equal,
     c_judge,
     c_source,
+    corners_judge,
     engine_judge,
     equivalence,
     formal_judge,
@@ -60,7 +61,7 @@ def run_core(core: Core, seed: int, each: int, only: Collection[str]) -> list[Sc
     pins.judge(first)
     for check in (
         *(frames_judge.CHECK, motions_judge.CHECK, timings_judge.CHECK, lines_judge.CHECK),
-        *(shapes_judge.CHECK, inputs_judge.CHECK, outputs_judge.CHECK),
+        *(shapes_judge.CHECK, corners_judge.CHECK, inputs_judge.CHECK, outputs_judge.CHECK),
         *registers_judge.CHECKS,
     ):
         engine_judge.judge(core, chosen, fates, verilated, seed, _say, check)
