@@ -27,7 +27,7 @@ BATCH = 20  # histories of a process
 TOLD = 200  # histories from one message to the next
 BOARD_HZ = 36_000_000
 BAUD = 1_000_000
-PATIENCE = 10  # seconds until all is answered
+PATIENCE = 30  # seconds until all is answered
 # While the flash is written the processor stalls and loses bytes; a sender waits for the answer.
 STORES = re.compile(r"^(?!.*J).*=|RST|L2|\.1$|28", re.M)
 
