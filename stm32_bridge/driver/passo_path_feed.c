@@ -9,7 +9,7 @@
 #include "passo_math.h"
 
 #define START_MICROSECONDS 20000u
-#define START_LINES 16u /* that may follow each other at once */
+#define START_LINES 16u /* that may be over within one poll */
 #define MICROSECONDS_PER_SECOND 1000000u
 #define BATCH_MICROSECONDS 300u
 #define SHORT_MICROSECONDS 2000u /* several times what a line takes to be read and planned */
