@@ -335,7 +335,7 @@ class Host(Player):
 def fed(
     lines: list[Line], settings: PathSettings, look_ahead: int, polls: int, burst: int = 0, **queues: int
 ) -> float:
-    """Seconds until a path is over, fed by a host; DriverError if the core was starved or a step is missing."""
+    """Seconds until a path is over, fed by a host; DriverError if the core starved or a step is missing."""
     host = Host(settings, look_ahead, settings.clock_hz // polls, **queues)
     try:
         for count, (target, feed) in enumerate(lines, 1):
