@@ -101,7 +101,8 @@ gcode-peer: ## Compare random G-code programs with LinuxCNC's interpreter (minut
 	@tools/setup.sh gcode
 	@$(BIN)/python -m benchmarks.gcode_compare $(if $(PROGRAMS),--programs $(PROGRAMS)) $(if $(SEED),--seed $(SEED))
 
-machine: setup ## Check FILE=MACHINE.toml; write settings, wiring and commands to build/machines/.
+machine: ## Build the machine of FILE=MACHINE.toml: bitstream, firmware, settings, wiring, in build/machines/.
+	@tools/setup.sh fpga firmware
 	@$(BIN)/passo make $(FILE)
 
 synth: ## Build the bitstream of a board: BOARD=..., optional AXES=, CLOCK= (MHz), PARTS=inputs,encoders,outputs; without BOARD: list the boards.

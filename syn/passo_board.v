@@ -22,43 +22,46 @@ module passo_board #(
   parameter            INPUTS           = 0,
   parameter            ENCODERS         = 0,
   parameter            OUTPUTS          = 0,
+  parameter            SHARED           = 0,             // 1: the pins of `home` are those of the limits, too
+  parameter            OUTPUT_PINS      = 8,             // of the core's 8 outputs
   parameter [AXES-1:0] STEP_RESET       = {AXES{1'b0}},
   parameter [AXES-1:0] DIR_RESET        = {AXES{1'b0}},
   parameter [AXES-1:0] ENABLE_RESET     = {AXES{1'b1}}
 ) (
-  input  wire            oscillator,
-  input  wire            spi_sclk,
-  input  wire            spi_mosi,
-  input  wire            spi_cs_n,
-  output wire            spi_miso,
-  input  wire            sync,
-  input  wire [AXES-1:0] limit_low,
-  input  wire [AXES-1:0] limit_high,
-  input  wire [AXES-1:0] home,
-  input  wire [AXES-1:0] alarm,
-  input  wire            probe,
-  input  wire            estop_n,
-  input  wire [AXES-1:0] encoder_a,
-  input  wire [AXES-1:0] encoder_b,
-  input  wire [AXES-1:0] encoder_index,
-  output wire [AXES-1:0] step,
-  output wire [AXES-1:0] dir,
-  output wire [AXES-1:0] enable,
-  output wire [     7:0] outputs,
-  output wire            power,
-  output wire            compare,
-  output wire            running,
-  output wire            irq,
-  output wire            led
+  input  wire                   oscillator,
+  input  wire                   spi_sclk,
+  input  wire                   spi_mosi,
+  input  wire                   spi_cs_n,
+  output wire                   spi_miso,
+  input  wire                   sync,
+  input  wire [       AXES-1:0] limit_low,
+  input  wire [       AXES-1:0] limit_high,
+  input  wire [       AXES-1:0] home,
+  input  wire [       AXES-1:0] alarm,
+  input  wire                   probe,
+  input  wire                   estop_n,
+  input  wire [       AXES-1:0] encoder_a,
+  input  wire [       AXES-1:0] encoder_b,
+  input  wire [       AXES-1:0] encoder_index,
+  output wire [       AXES-1:0] step,
+  output wire [       AXES-1:0] dir,
+  output wire [       AXES-1:0] enable,
+  output wire [OUTPUT_PINS-1:0] outputs,
+  output wire                   power,
+  output wire                   compare,
+  output wire                   running,
+  output wire                   irq,
+  output wire                   led
 );
 
-  wire clk;
-  wire locked;  // asynchronous
-  wire sclk;
-  wire miso;
-  wire miso_enable;
-  wire core_running;
-  wire core_irq;
+  wire       clk;
+  wire       locked;  // asynchronous
+  wire       sclk;
+  wire       miso;
+  wire       miso_enable;
+  wire       core_running;
+  wire       core_irq;
+  wire [7:0] core_outputs;
 
   passo_board_pll u_pll (
     .oscillator(oscillator),
@@ -106,6 +109,7 @@ module passo_board #(
   assign led     = beat[BEATS-1] ^ (LED_INVERTED != 0);
   assign running = core_running ^ (RUNNING_INVERTED != 0);
   assign irq     = core_irq ^ (IRQ_INVERTED != 0);
+  assign outputs = core_outputs[OUTPUT_PINS-1:0];
 
   passo_spi_top #(
     .CHANNELS      (1),
@@ -128,8 +132,8 @@ module passo_board #(
     .spi_miso       (miso),
     .spi_miso_enable(miso_enable),
     .sync           (sync),
-    .limit_low      (limit_low),
-    .limit_high     (limit_high),
+    .limit_low      (SHARED != 0 ? home : limit_low),
+    .limit_high     (SHARED != 0 ? home : limit_high),
     .home           (home),
     .alarm          (alarm),
     .probe          (probe),
@@ -140,7 +144,7 @@ module passo_board #(
     .step           (step),
     .dir            (dir),
     .enable         (enable),
-    .outputs        (outputs),
+    .outputs        (core_outputs),
     .power          (power),
     .compare        (compare),
     .running        (core_running),

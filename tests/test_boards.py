@@ -5,6 +5,7 @@ import importlib.util
 import json
 import re
 import subprocess
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -50,9 +51,13 @@ def ports_of_top(chosen: Board, axes: int, parts: Sequence[str] = ()) -> set[str
     for width, name in re.findall(r"(?:input|output)\s+wire\s+(\[[^]]*\])?\s*(\w+)", TOP.read_text()):
         if name in of_parts:
             continue
-        bits = {"": 1, "[AXES-1:0]": axes, "[     7:0]": 8}[width]
+        bits = {"": 1, "AXES": axes, "OUTPUT_PINS": 8}[width.strip("[ :0]").removesuffix("-1")]
         names |= {f"{name}[{bit}]" for bit in range(bits)} if bits > 1 else {name}
-    return names - {*chosen.left_out}
+    names -= {"outputs"} | {f"outputs[{bit}]" for bit in range(8)}
+    if "outputs" in parts:
+        count = len(chosen.parts["outputs"]["outputs"])
+        names |= {f"outputs[{bit}]" for bit in range(count)} if count > 1 else {"outputs"}
+    return {name for name in names if name.partition("[")[0] not in chosen.left_out(parts)}
 
 
 @each_board
@@ -192,12 +197,26 @@ def test_top_elaborates(board: Board) -> None:
 
 
 @needs_yosys
-@pytest.mark.parametrize("part", ["inputs", "encoders", "outputs"])
-def test_top_elaborates_with_a_part(part: str) -> None:
-    """Its ports are those that have pins."""
-    chosen = board("tangnano9k")
-    ports = elaborate(chosen, 2, [part])["ports"]
-    assert {re.sub(r"\[\d+\]", "", port) for port in chosen.ports(2, [part])} == ports.keys()
+@pytest.mark.parametrize(
+    ("name", "parts"),
+    [
+        ("tangnano9k", ["encoders"]),
+        ("tangnano9k", ["inputs", "outputs"]),
+        ("icebreaker", ["outputs"]),
+        ("icebreaker", ["inputs", "outputs"]),
+    ],
+)
+def test_top_elaborates_with_parts(name: str, parts: list[str]) -> None:
+    """Its ports are those that have pins, as wide as these; one pin may be that of three inputs."""
+    chosen = board(name)
+    axes = 2 if "encoders" in parts else 3
+    top = elaborate(chosen, axes, parts)
+    widths = Counter(re.sub(r"\[\d+\]", "", port) for port in chosen.ports(axes, parts))
+    assert {port: len(facts["bits"]) for port, facts in top["ports"].items()} == widths
+    core = top["cells"]["u_core"]["connections"]
+    if "inputs" in parts:
+        assert (core["limit_low"] == core["limit_high"] == core["home"]) == (name == "icebreaker")
+        assert (set(core["alarm"]) == {"0"}) == (name == "icebreaker")
 
 
 POWER_UP = """\
@@ -364,7 +383,7 @@ def test_board_is_added_by_a_table(made_up: Path, capsys: pytest.CaptureFixture[
     assert made_up.exists() and synth.main([]) == 0
     assert re.search(r"made_up +2 +30 MHz +Made up", capsys.readouterr().out)
     chosen = board("made_up")
-    assert chosen.pack == ("-s",) and chosen.left_out == ("irq", "led")
+    assert chosen.pack == ("-s",) and chosen.left_out() == ("irq", "led")
     assert chosen.parameters() == {
         "AXES": 2,
         "CLOCK_HZ": 30_000_000,
@@ -396,7 +415,7 @@ def test_tables_of_the_docs_are_good(made_up: Path) -> None:
     table, device = re.findall(r"^```toml\n(.*?)^```", (paths.docs / "fpga.md").read_text(), re.M | re.S)
     made_up.write_text(table)
     chosen = board("made_up")
-    assert chosen.axes == 2 and chosen.left_out == ("led",)
+    assert chosen.axes == 2 and chosen.left_out() == ("led",)
     assert (chosen.reset["step"], chosen.reset["dir"], chosen.reset["enable"]) == ((0, 0), (0, 0), (1, 1))
     made_up.write_text(re.sub("^(device|pll) = .*\n", "", table, flags=re.M) + device)
     assert board("made_up").device.capacity == 83640

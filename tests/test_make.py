@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from passo import make_command
 from passo.cli import main
 from passo.engine import model_engine
 from passo.grbl import Grbl
@@ -14,9 +15,9 @@ from passo.machine_file import read_machine
 from passo.make_command import settings_lines
 from passo.toolchain import paths
 from passo_fpga.boards import board
+from passo_fpga.flow import Placed
+from passo_fpga.synth import Bitstream
 from passo_stm32.grbl_board import GrblBoard, grbl_elf
-
-from tests.test_makefile import make
 
 ROUTER = paths.examples / "machines" / "router.toml"
 TEXT = ROUTER.read_text(encoding="utf-8")
@@ -25,7 +26,7 @@ HZ = 108_000_000  # of the board
 
 def made(path: Path, folder: Path) -> dict[str, list[str]]:
     """The lines of all results."""
-    assert main(["make", str(path), "--out", str(folder)]) == 0
+    assert main(["make", str(path), "--out", str(folder), "--no-build"]) == 0
     return {file.name: file.read_text().splitlines() for file in folder.iterdir()}
 
 
@@ -43,11 +44,10 @@ def test_results(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert wires["home[2]"] == ["T10", "J3 17", "Z: home switch"]
     assert wires["limit_low[0]"][-1] == wires["alarm[2]"][-1] == wires["sync"][-1] == "ground"
     assert wires["spi_sclk"][-1] == "Blue Pill PA5" and wires["compare"][-1] == "not connected"
-    commands = [line for line in results["flash.sh"] if line.startswith("make ")]
-    assert commands[0] == "make synth BOARD=hx8k AXES=3 PARTS=inputs,outputs"
-    for command in commands:
-        words = re.findall(r'(?:[^ "]|"[^"]*")+', command)[1:]
-        assert make(*(word.replace('"', "") for word in words)).returncode == 0
+    assert results["flash.sh"][-2:] == [
+        "iceprog -S ./router.bin",
+        "st-flash --reset write firmware/passo.bin 0x08000000",
+    ]
     told = capsys.readouterr().out
     assert "12,000 steps/s of at most 200,000" in told and "EN is high from power-up on" in told
 
@@ -89,8 +89,18 @@ def test_settings_are_taken_one_by_one() -> None:
 def test_the_firmware_takes_them(tmp_path: Path) -> None:
     """The image of the commands, at the core of the board, on the emulated chip; settings outlast a reset."""
     results = made(ROUTER, tmp_path)
-    (definitions,) = re.findall(r'MACHINE="(.*)"', "\n".join(results["flash.sh"]))
-    elf = grbl_elf(paths.build / "tests" / "firmware_router", *definitions.replace("-D", "").split())
+    definitions = make_command._definitions(read_machine(ROUTER)).items()
+    assert dict(definitions) == {
+        "AXES": 3,
+        "HOMES": 7,
+        "LIMITS_LOW": 0,
+        "LIMITS_HIGH": 0,
+        "HOMED": 7,
+        "PROBE": 1,
+    }
+    elf = grbl_elf(
+        paths.build / "tests" / "firmware_router", *(f"{name}={value}" for name, value in definitions)
+    )
     with model_engine(replace(core_for(read_machine(ROUTER)), axes=3), HZ) as engine:
         assert engine.parameters.clock_hz == HZ
         board = GrblBoard(engine, elf)
@@ -100,6 +110,32 @@ def test_the_firmware_takes_them(tmp_path: Path) -> None:
         settings = board.line("$$").splitlines()
         assert {"$0=2.500", "$29=5.000", "$5=1", "$23=3", "$110=9000.000", "$112=1200.000"} < set(settings)
         assert f":{HZ}:0]" in board.line("$I")
+
+
+def test_images(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is built, for what; a second run builds no firmware again; a bitstream that fails is an error."""
+    asked = []
+
+    def synth(*arguments: object) -> Bitstream | None:
+        asked.append(arguments[:5])
+        placed = Placed(True, False, 4321, 20, {"clk": (103.0, 96.0), "sclk": (50.0, 25.0)}, tmp_path)
+        return Bitstream(tmp_path, placed, 7680, "LC", 96.0, 2, 77) if len(asked) < 3 else None
+
+    monkeypatch.setattr(make_command.synth, "make", synth)
+    path, folder = tmp_path / "one.toml", tmp_path / "out"
+    path.write_text(TEXT.replace("probe", "clock_hz = 96_000_000\nprobe", 1))
+    arguments = ["make", str(path), "--out", str(folder)]
+    assert main(arguments) == 0
+    assert asked == [(board("hx8k"), 3, 96.0, ("inputs", "outputs"), folder / "one.bin")]
+    told = capsys.readouterr().out
+    assert (
+        "4,321 of 7,680 LC (56%); build 77" in told and "103.0 MHz for a clock of 96 MHz, margin 7.3%" in told
+    )
+    assert re.search(r"firmware +\d+ of 63488 bytes", (folder / "summary.txt").read_text())
+    image = folder / "firmware" / "passo.bin"
+    built = image.stat().st_mtime_ns
+    assert main(arguments) == 0 and image.stat().st_mtime_ns == built
+    assert main(arguments) == 1 and "bitstream  NONE" in (folder / "summary.txt").read_text()
 
 
 MORE = "".join(
@@ -112,10 +148,14 @@ WRONG = [
     (
         'board = "hx8k"\n',
         'board = "hx8k"\nclock_hz = 100_000_000\n',
-        "clock_hz is 100000000, but .* at 108000000 Hz",
+        "clock_hz is 100000000, but the PLL of the board hx8k makes 100500000",
     ),
     ('board = "hx8k"', 'board = "colorlight"', "the table has no pins for part 'inputs'; it has none"),
-    ('board = "hx8k"', 'board = "tangnano9k"', "inputs.limit_low: 3 are needed for 3 axes, the table has 2"),
+    (
+        'board = "hx8k"',
+        'board = "hx8k"\nclock_hz = 900_000_000',
+        "clock_hz: the PLL cannot generate 900 MHz from 12 MHz",
+    ),
     ('"DM542"', '"DM524"', "drive must be one of .*; did you mean DM542?"),
     ("speed = 150", "speed = 2501", "axis 1: speed is 2501; the pins allow at most 2500"),
     ("speed = 150", 'speed = "150mm"', "axis 1: speed must be a number, not '150mm'"),
@@ -146,6 +186,38 @@ WRONG = [
     ("[switches]", "[switches", "Expected"),
     (TEXT, TEXT + MORE, "axes: 5 requested, but the table has pins for 4"),
 ]
+
+
+SMALL = [  # machines that other boards cannot be
+    (
+        "icebreaker",
+        'switches = ["home", "limit_low"]',
+        "axis 1: switches: the board icebreaker has one pin for home and",
+    ),
+    ("tangnano9k", 'switches = ["home"]', "inputs.limit_low: 4 are needed for 4 axes, the table has 3"),
+]
+
+
+@pytest.mark.parametrize(("name", "switches", "said"), SMALL)
+def test_small_boards(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, switches: str, said: str
+) -> None:
+    """Pins that are shared, pins that are too few."""
+    path = tmp_path / "small.toml"
+    more = MORE[: MORE.index("[[axis]]", 1)] if name == "tangnano9k" else ""
+    path.write_text(TEXT.replace("hx8k", name).replace('switches = ["home"]', switches, 1) + more)
+    assert main(["make", str(path), "--out", str(tmp_path / "out")]) == 2
+    assert said in capsys.readouterr().err and not (tmp_path / "out").exists()
+
+
+def test_one_pin_of_a_switch_is_on_the_sheet(tmp_path: Path) -> None:
+    """Of a board that shares them; which one it is."""
+    path = tmp_path / "small.toml"
+    text = TEXT.replace("hx8k", "icebreaker").replace('switches = ["home"]', 'switches = ["limit_low"]', 1)
+    path.write_text(text)
+    rows = dict(re.split(r" {2,}", line, maxsplit=1) for line in made(path, tmp_path / "out")["wiring.txt"])
+    assert rows["home[0]"].endswith("X: limit, low end") and rows["home[1]"].endswith("Y: home switch")
+    assert not {"limit_low[0]", "alarm[0]", "compare"} & set(rows) and "outputs[2]" in rows
 
 
 @pytest.mark.parametrize(("old", "new", "said"), WRONG)

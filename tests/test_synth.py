@@ -128,7 +128,7 @@ def play_synth(
     monkeypatch.setattr(synth, "place", lambda design, seed, *_: results[seed])
     monkeypatch.setattr(synth, "pack", pack)
     (folder / "icebreaker.bin").write_text("of another time")
-    made = synth.make(chosen)
+    made = synth.make(chosen) is not None
     assert made == (folder / "icebreaker.bin").exists()
     return made
 
@@ -148,11 +148,36 @@ def test_first_seed_that_will_do_is_taken(
     results = {1: with_clk(9), 2: with_clk(9), 3: replace(with_clk(90), complaints=("odd",)), 4: with_clk(70)}
     assert play_synth(monkeypatch, tmp_path, results)
     said = capsys.readouterr().out
-    assert re.search(r"70\.0 MHz for a clock of .*: seed 4, the first that meets timing \(4 tried\)", said)
+    assert re.search(
+        r"70\.0 MHz for a clock of 48 MHz, margin 45\.8%: seed 4, the first with 3% \(4 tried\)", said
+    )
     assert re.search(r"^\[ *\d+:\d\d\] icebreaker: synthesis$", said, re.M)
     for seed in results:
         assert re.search(rf"^\[ *\d+:\d\d\] icebreaker: place and route, seed {seed}$", said, re.M)
     assert "seed 1: clk: 9.0 MHz of" in said and "seed 3: odd" in said
+
+
+@pytest.mark.parametrize(
+    ("reached", "told"),
+    [
+        (
+            {3: 48.1, 5: 49.5},
+            "49.5 MHz for a clock of 48 MHz, margin 3.1%: seed 5, the first with 3% (6 tried)",
+        ),
+        ({3: 48.1, 5: 49.3}, "margin 2.7%: seed 5, the best: none has 3% (8 tried)"),
+    ],
+)
+def test_seed_without_margin_is_not_the_first_choice(
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    reached: Mapping[int, float],
+    told: str,
+) -> None:
+    """But better than none."""
+    results = {seed: with_clk(reached.get(seed, 40)) for seed in synth.SEEDS}
+    assert play_synth(monkeypatch, tmp_path, results)
+    assert told in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

@@ -88,10 +88,11 @@ def _parser() -> argparse.ArgumentParser:
     source.add_argument("--csv", type=Path, metavar="FILE", help="read a curve (u,s) or a table (k,point)")
     shape.add_argument("--out", type=Path, metavar="FILE", help="write the table: FILE.csv or FILE.toml")
     shape.add_argument("--plot", type=Path, metavar="FILE.png", help="draw it")
-    made = commands.add_parser("make", help="from a machine file: settings, wiring, commands")
+    made = commands.add_parser("make", help="from a machine file: bitstream, firmware, settings, wiring")
     made.set_defaults(command=_make)
     made.add_argument("machine", type=Path, metavar="MACHINE.toml", help="machine file (docs/gcode.md)")
     made.add_argument("--out", type=Path, metavar="DIR", help="output folder (default build/machines/NAME)")
+    made.add_argument("--no-build", action="store_true", help="no images: only check, and write the texts")
     console_options.add(commands).set_defaults(command=_console)
     firmware = commands.add_parser(
         "firmware",
@@ -178,8 +179,7 @@ def _shape(options: argparse.Namespace) -> int:
 def _make(options: argparse.Namespace) -> int:
     from passo.make_command import make_machine
 
-    make_machine(options.machine, options.out)
-    return OK
+    return OK if make_machine(options.machine, options.out, not options.no_build) else FAILED
 
 
 def _console(options: argparse.Namespace) -> int:

@@ -130,9 +130,7 @@ def setup_of(machine: MachineFile, parameters: Parameters, defaults: Any, pages:
 def core_for(machine: MachineFile) -> Parameters:
     """The core that a machine needs."""
     core = parameters_for(len(machine.settings.axes))
-    outputs = machine.gcode.spindle_maximum > 0
-    parts = {"inputs": int(machine.has_inputs), "outputs": int(outputs)}
-    return replace(core, clock_hz=machine.clock_hz, **parts)
+    return replace(core, clock_hz=machine.clock_hz, **dict.fromkeys(machine.parts, 1))
 
 
 def attach(engine: Any, machine: MachineFile) -> None:

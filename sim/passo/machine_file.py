@@ -93,7 +93,12 @@ class MachineFile:
     @property
     def has_inputs(self) -> bool:
         """Whether there is a switch or a probe."""
-        return self.switches.probe or any(end.switches for end in self.ends)
+        return "inputs" in self.parts
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """The optional parts of the core that it needs."""
+        return _parts(self.ends, self.switches, self.gcode.spindle_maximum)
 
     @property
     def clock_hz(self) -> int:
@@ -117,7 +122,6 @@ def read_machine(path: Path) -> MachineFile:
 
 def _machine(path: Path, data: Table) -> MachineFile:
     check_known(data, FILE_KEYS)
-    board, clock_hz = _board(data)
     pins, enable_inverted = _pins(data)
     tables = read_tables(data, "axis")
     if not 1 <= len(tables) <= len(AXIS_LETTERS):
@@ -130,19 +134,20 @@ def _machine(path: Path, data: Table) -> MachineFile:
     for number, axis in enumerate(axes, 1):
         if profile == "jerk" and not axis.jerk:
             raise BadValueError(f'axis {number}: profile = "jerk" needs its jerk in mm/s^3')
-    timing = within("pins", lambda: read_pins(pins, clock_hz, (ENABLE_INVERTED,)))
-    deviation = _number(data, "junction_deviation", JUNCTION_DEVIATION)
-    check_pins(axes, deviation, timing, clock_hz)
     ends = tuple(
         within(f"axis {number}", lambda table=table: _ends(table)) for number, table in enumerate(tables, 1)
     )
     switches = _switches(data)
+    spindle = read_positive(data, "spindle_maximum") if "spindle_maximum" in data else 0
+    board, clock_hz = _board(data, ends, _parts(ends, switches, spindle))
+    timing = within("pins", lambda: read_pins(pins, clock_hz, (ENABLE_INVERTED,)))
+    deviation = _number(data, "junction_deviation", JUNCTION_DEVIATION)
+    check_pins(axes, deviation, timing, clock_hz)
     if switches.soft_limits and not any(end.home for end in ends):
         raise BadValueError("soft_limits: no axis has a home")
     tolerance = _number(data, "arc_tolerance", ARC_TOLERANCE)
     if not tolerance:
         raise BadValueError("arc_tolerance must be greater than 0")
-    spindle = read_positive(data, "spindle_maximum") if "spindle_maximum" in data else 0
     return MachineFile(
         path,
         PathSettings(
@@ -161,18 +166,38 @@ def _machine(path: Path, data: Table) -> MachineFile:
     )
 
 
-def _board(data: Table) -> tuple[str, int]:
-    """The board, if there is one, and its clock; without a board, the clock that the file says."""
+def _parts(ends: Sequence[AxisEnds], switches: Switches, spindle_maximum: int) -> tuple[str, ...]:
+    inputs = switches.probe or any(end.switches for end in ends)
+    return tuple(part for part, needed in (("inputs", inputs), ("outputs", spindle_maximum > 0)) if needed)
+
+
+def _board(data: Table, ends: Sequence[AxisEnds], parts: Sequence[str]) -> tuple[str, int]:
+    """The board, if there is one, and the clock that the file says, or that of the board with these parts."""
     if "board" not in data:
         return "", read_clock_hz(data)
     from passo_fpga import boards
+    from passo_fpga.pll import PllError
+    from passo_fpga.table import BoardError
 
     need_repository("a board")
     name = read_word(data, "board", tuple(boards.names()))
-    clock_hz = boards.board(name).parameters()["CLOCK_HZ"]
-    if "clock_hz" in data and read_clock_hz(data) != clock_hz:
-        raise BadValueError(f"clock_hz is {data['clock_hz']}, but the board {name} runs at {clock_hz} Hz")
-    return name, clock_hz
+    wanted = read_clock_hz(data) if "clock_hz" in data else None
+    try:
+        board = boards.board(name)
+        parameters = board.parameters(len(ends), wanted and wanted / 1e6, parts)
+    except PllError as error:
+        raise BadValueError(f"clock_hz: {error}") from None
+    except BoardError as error:
+        raise BadValueError(str(error)) from None
+    for number, end in enumerate(ends, 1):
+        if board.shared and len(end.switches) > 1:
+            both = " and ".join(end.switches)
+            raise BadValueError(f"axis {number}: switches: the board {name} has one pin for {both}")
+    if wanted not in (None, parameters["CLOCK_HZ"]):
+        raise BadValueError(
+            f"clock_hz is {wanted}, but the PLL of the board {name} makes {parameters['CLOCK_HZ']}"
+        )
+    return name, parameters["CLOCK_HZ"]
 
 
 def _pins(data: Table) -> tuple[Table, bool]:

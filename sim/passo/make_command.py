@@ -1,18 +1,23 @@
 # SPDX-License-Identifier: MIT
 """`passo make`: from a machine file to what a board, its firmware and a sender need.
 
-Everything is checked before anything is written.
+Everything is checked before anything is written. Images that are up to date are not built again.
 """
 
 import re
+import shlex
 from collections.abc import Iterator
 from pathlib import Path
 
+from passo_fpga import synth
 from passo_fpga.boards import OSCILLATOR, Board, board, names
 from passo_fpga.places import host_pins, places
 from passo_fpga.table import BoardError
+from passo_fpga.tools import ToolError
+from passo_stm32.board import make_firmware
 
-from passo.failure import BadInputError
+from passo.console import stages
+from passo.failure import BadInputError, Failure
 from passo.gcode import AXIS_LETTERS
 from passo.grbl_setup import MILLION, default_settings
 from passo.machine_file import MachineFile, read_machine
@@ -22,6 +27,10 @@ from passo.pins import INPUTS
 from passo.toolchain import need_repository, paths
 
 SETTINGS, WIRING, SUMMARY, COMMANDS = "settings.txt", "wiring.txt", "summary.txt", "flash.sh"
+FIRMWARE = "firmware"  # folder of its images
+NOT_BUILT = "  no images: --no-build"
+FAILED_BITSTREAM = "  bitstream  NONE: see above"
+FAST_SPI_HZ = 72_000_000  # of a core that takes 18 MHz; docs/firmware.md
 SPEED_AT = 110  # first setting of the speeds
 NO_SETTING = 0xFF
 OUTPUTS = ("spindle on", "spindle reverse", "flood coolant", "mist coolant")  # bits 0 to 3
@@ -35,30 +44,35 @@ OTHER_PORTS = {
 }
 
 
-def make_machine(path: Path, out: Path | None = None) -> None:
-    """Write the results of a machine file and print the summary. Raises BadInputError."""
+def make_machine(path: Path, out: Path | None = None, build: bool = True) -> bool:
+    """Write the results of a machine file, build its images and print the summary.
+
+    Returns whether there is a bitstream that meets its clocks. Raises BadInputError, or Failure for a tool.
+    """
     need_repository("passo make")
     machine = read_machine(path)
     if not machine.board:
         raise BadInputError(f"{path}: board is missing; must be one of {', '.join(names())}")
     _check_firmware(machine)
-    chosen, parts = board(machine.board), _parts(machine)
+    chosen = board(machine.board)
     try:
-        wires = list(_wires(machine, chosen, parts))
+        wires = list(_wires(machine, chosen))
     except BoardError as error:
         raise BadInputError(f"{path}: {error}") from None
-    summary = list(_summary(machine, chosen, parts))
+    summary = list(_summary(machine, chosen))
+    folder = out or paths.results / "machines" / path.stem
     results = {
         SETTINGS: settings_lines(machine),
         WIRING: _aligned([("signal", "FPGA pin", "on the board", "to"), *wires]),
-        SUMMARY: summary,
-        COMMANDS: list(_commands(machine, chosen, parts)),
+        COMMANDS: list(_commands(chosen, path.stem)),
     }
-    folder = out or paths.results / "machines" / path.stem
-    empty_folder(folder, results)
+    empty_folder(folder, (*results, SUMMARY))
     for name, lines in results.items():
         write_text(folder / name, "\n".join([*lines, ""]))
-    print("\n".join([*summary, f"written to {folder}: {', '.join(results)}"]))
+    images = list(_images(machine, chosen, folder / path.stem)) if build else [NOT_BUILT]
+    write_text(folder / SUMMARY, "\n".join([*summary, *images, ""]))
+    print("\n".join([*summary, *images, f"written to {folder}: {', '.join(results)}, {SUMMARY}"]))
+    return FAILED_BITSTREAM not in images
 
 
 def _check_firmware(machine: MachineFile) -> None:
@@ -72,9 +86,26 @@ def _check_firmware(machine: MachineFile) -> None:
                 raise BadInputError(f"{machine.path}: axis {letter}: {key} is no setting of the firmware")
 
 
-def _parts(machine: MachineFile) -> list[str]:
-    wanted = {"inputs": machine.has_inputs, "outputs": machine.gcode.spindle_maximum > 0}
-    return [part for part, needed in wanted.items() if needed]
+def _images(machine: MachineFile, chosen: Board, path: Path) -> Iterator[str]:
+    """Build firmware and bitstream, what is up to date excepted; a line about each."""
+    tell = stages()
+    tell("firmware")
+    definitions = " ".join(f"-D{name}={value}" for name, value in _definitions(machine).items())
+    said = make_firmware("GRBL=1", f"OUT={(path.parent / FIRMWARE).resolve()}", f"MACHINE={definitions}")
+    flash = next(line.split(maxsplit=1)[1] for line in said.splitlines() if line.startswith("flash"))
+    yield f"  {FIRMWARE}  {flash}"
+    bitstream = path.with_suffix(f".{chosen.device.family.suffix}")
+    try:
+        made = synth.make(
+            chosen, len(machine.ends), machine.clock_hz / 1e6, machine.parts, bitstream.resolve(), tell
+        )
+    except ToolError as error:
+        raise Failure(str(error)) from None
+    if not made:
+        yield FAILED_BITSTREAM
+        return
+    yield f"  bitstream  {made.size}; build {made.build}"
+    yield f"  clock      {made.clock}"
 
 
 def _text(millionths: int) -> str:
@@ -98,13 +129,13 @@ def settings_lines(machine: MachineFile) -> list[str]:
     ]
 
 
-def _wires(machine: MachineFile, chosen: Board, parts: list[str]) -> Iterator[tuple[str, ...]]:
+def _wires(machine: MachineFile, chosen: Board) -> Iterator[tuple[str, ...]]:
     where, host = places(chosen.name), host_pins()
-    for port, pin in chosen.ports(len(machine.settings.axes), parts).items():
+    for port, pin in chosen.ports(len(machine.settings.axes), machine.parts).items():
         if port != OSCILLATOR:
             name, index = re.fullmatch(r"(\w+?)(?:\[(\d+)\])?", port).groups()
             there = where.get(port if index else f"{name}[0]", where.get(port, ""))
-            yield port, pin.pin, there, _end(machine, host, name, int(index or 0)) or _unused(name)
+            yield port, pin.pin, there, _end(machine, chosen, host, name, int(index or 0)) or _unused(name)
 
 
 def _unused(name: str) -> str:
@@ -112,15 +143,16 @@ def _unused(name: str) -> str:
     return "ground" if name in INPUT_NAMES else "not connected"
 
 
-def _end(machine: MachineFile, host: dict[str, str], name: str, index: int) -> str:
+def _end(machine: MachineFile, chosen: Board, host: dict[str, str], name: str, index: int) -> str:
     """What a wire leads to; nothing if it is not used."""
     if name in host:
         return f"Blue Pill {host[name]}"
     if name in AXIS_PORTS:
         return f"drive {AXIS_LETTERS[index]}: {AXIS_PORTS[name]}"
     if name in SWITCH_PORTS:
-        fitted = name in machine.ends[index].switches
-        return f"{AXIS_LETTERS[index]}: {SWITCH_PORTS[name]}" if fitted else ""
+        fitted = machine.ends[index].switches
+        served = [port for port in SWITCH_PORTS if port in fitted and (port == name or chosen.shared)]
+        return "".join(f"{AXIS_LETTERS[index]}: {SWITCH_PORTS[port]}" for port in served)
     if name == "probe":
         return "probe" if machine.switches.probe else ""
     if name == "outputs":
@@ -133,11 +165,13 @@ def _aligned(rows: list[tuple[str, ...]]) -> list[str]:
     return ["  ".join(map(str.ljust, row, widths)).rstrip() for row in rows]
 
 
-def _summary(machine: MachineFile, chosen: Board, parts: list[str]) -> Iterator[str]:
+def _summary(machine: MachineFile, chosen: Board) -> Iterator[str]:
     axes, pins = machine.settings.axes, machine.pins
     yield f"{machine.path.name}: {chosen.title}"
-    with_parts = ", ".join(parts) or "no parts"
-    yield f"  core   {len(axes)} of {chosen.axes} axes, {with_parts}, {chosen.clock_mhz:g} MHz"
+    with_parts = ", ".join(machine.parts) or "no parts"
+    spi = 18 if machine.clock_hz >= FAST_SPI_HZ else 9
+    clock = f"{machine.clock_hz / 1e6:g} MHz; SPI {spi} MHz"
+    yield f"  core   {len(axes)} of {chosen.axes} axes, {with_parts}, {clock}"
     longest = {"STEP": max(pins.step_high, pins.step_low), "DIR": max(pins.dir_setup, pins.dir_hold)}
     times = (f"{name} {clocks / machine.clock_hz * 1e6:.3g} us" for name, clocks in longest.items())
     yield f"  pins   {', '.join(times)}; EN active {'low' if machine.enable_inverted else 'high'}"
@@ -154,9 +188,10 @@ def _mask(machine: MachineFile, name: str) -> int:
     return sum((name in end.switches) << axis for axis, end in enumerate(machine.ends))
 
 
-def _commands(machine: MachineFile, chosen: Board, parts: list[str]) -> Iterator[str]:
+def _definitions(machine: MachineFile) -> dict[str, int]:
+    """Of the firmware, see grbl_machine.h."""
     homed = sum((end.home is not None) << axis for axis, end in enumerate(machine.ends))
-    values = {
+    return {
         "AXES": len(machine.ends),
         "HOMES": _mask(machine, "home"),
         "LIMITS_LOW": _mask(machine, "limit_low"),
@@ -164,11 +199,11 @@ def _commands(machine: MachineFile, chosen: Board, parts: list[str]) -> Iterator
         "HOMED": homed,
         "PROBE": int(machine.switches.probe),
     }
-    definitions = " ".join(f"-D{name}={value}" for name, value in values.items())
-    with_parts = f" PARTS={','.join(parts)}" if parts else ""
+
+
+def _commands(chosen: Board, stem: str) -> Iterator[str]:
     yield "#!/bin/sh -e"
-    yield "# In the folder of the repository. Then send the lines of settings.txt with any sender."
-    yield f"make synth BOARD={chosen.name} AXES={len(machine.ends)}{with_parts}"
-    yield f"{chosen.load} build/synth/{chosen.name}.{chosen.device.family.suffix}"
-    yield f'make firmware GRBL=1 MACHINE="{definitions}"'
-    yield "st-flash --reset write build/firmware_grbl/passo.bin 0x08000000"
+    yield "# Then send the lines of settings.txt with any sender."
+    yield 'cd "$(dirname "$0")"'
+    yield f"{chosen.load} {shlex.quote(f'./{stem}.{chosen.device.family.suffix}')}"
+    yield f"st-flash --reset write {FIRMWARE}/passo.bin 0x08000000"

@@ -34,21 +34,23 @@ class Board:
     pack: tuple[str, ...]  # options of the packer
     oscillator_mhz: float
     clock_mhz: float
+    parts_mhz: float  # the clock of a core with parts
     pll_kind: str
     pins: Mapping[str, Pin]  # except those of the axes
     axis_pins: tuple[Mapping[str, Pin], ...]
     reset: Mapping[str, tuple[int, ...]]
     parts: Mapping[str, core_parts.PartPins[Pin]]  # pins of each optional part of the core
+    shared: bool  # the pin of a home switch is that of both limits of its axis
 
     @property
     def axes(self) -> int:
         """Number of axes that it has pins for."""
         return len(self.axis_pins)
 
-    @property
-    def left_out(self) -> tuple[str, ...]:
-        """Ports without a pin."""
-        return tuple(port for port in OPTIONAL if port not in self.pins)
+    def left_out(self, parts: Sequence[str] = ()) -> tuple[str, ...]:
+        """Ports without a pin, of the core with these parts."""
+        of_parts = (port for part in parts for port in core_parts.PORTS[part] if port not in self.parts[part])
+        return (*(port for port in OPTIONAL if port not in self.pins), *of_parts)
 
     def ports(self, axes: int | None = None, parts: Sequence[str] = ()) -> dict[str, Pin]:
         """The pin of each port bit of a core with these parts. A port of one bit has no index.
@@ -74,31 +76,35 @@ class Board:
         core_parts.check(self.name, self.parts, parts, axes)
         for part in parts:
             for port, of_bits in self.parts[part].items():
-                count = core_parts.bits(part, port, axes)
+                count = min(core_parts.bits(part, port, axes), len(of_bits))
                 for bit, pin in enumerate(of_bits[:count]):
                     name = f"{port}[{bit}]"
                     yield f"{part}.{name}", name if count > 1 else port, pin
 
-    def pll(self, mhz: float | None = None) -> Pll:
-        """PLL settings for the board's clock, or for `mhz`."""
+    def pll(self, mhz: float | None = None, parts: Sequence[str] = ()) -> Pll:
+        """PLL settings for the board's clock with these parts, or for `mhz`."""
         if mhz is not None:
             return dividers(self.device.family, self.oscillator_mhz, mhz)
+        key, own = ("parts_mhz", self.parts_mhz) if parts else ("mhz", self.clock_mhz)
         try:
-            return dividers(self.device.family, self.oscillator_mhz, self.clock_mhz)
+            return dividers(self.device.family, self.oscillator_mhz, own)
         except PllError as error:
-            raise TableError(self.name, "clock.mhz", str(error)) from None
+            raise TableError(self.name, f"clock.{key}", str(error)) from None
 
     def parameters(
         self, axes: int | None = None, mhz: float | None = None, parts: Sequence[str] = ()
     ) -> dict[str, int]:
         """Parameters of the top module."""
         chosen = self._axes(axes)
+        core_parts.check(self.name, self.parts, parts, chosen)
         inverted = [port for port in OPTIONAL if port in self.pins and self.pins[port].inverted]
         return {
             "AXES": chosen,
-            "CLOCK_HZ": round(self.pll(mhz).mhz * 1e6),
+            "CLOCK_HZ": round(self.pll(mhz, parts).mhz * 1e6),
             **self.device.core,
             **{part.upper(): 1 for part in parts},
+            **({"SHARED": 1} if self.shared and "inputs" in parts else {}),
+            **({"OUTPUT_PINS": len(self.parts["outputs"]["outputs"])} if "outputs" in parts else {}),
             **{f"{port.upper()}_INVERTED": 1 for port in inverted},
             **{
                 f"{port.upper()}_RESET": sum(level << axis for axis, level in enumerate(levels[:chosen]))
@@ -138,6 +144,7 @@ def board(name: str) -> Board:
     clock = table.table("clock")
     pll_kind = clock.choice("pll", family.plls) if family.plls else ""
     oscillator_mhz, clock_mhz = clock.number("oscillator_mhz"), clock.number("mhz")
+    parts_mhz = clock.number("parts_mhz") if clock.has("parts_mhz") else clock_mhz
     oscillator = _pin(clock, "pin", family)
     clock.end()
 
@@ -158,17 +165,17 @@ def board(name: str) -> Board:
         if levels.has(port):
             reset[port] = levels.levels(port, len(axis_pins))
     levels.end()
+    tables = {part: table.table(part) for part in core_parts.PORTS if table.has(part)}
+    shared = "inputs" in tables and tables["inputs"].flag(core_parts.SHARED)
     parts = {
-        part: core_parts.read(table.table(part), part, len(axis_pins), lambda at, key: _pin(at, key, family))
-        for part in core_parts.PORTS
-        if table.has(part)
+        part: core_parts.read(of_part, part, len(axis_pins), lambda at, key: _pin(at, key, family))
+        for part, of_part in tables.items()
     }
     table.end()
 
     of_axes = tuple(axis_pins)
-    made = Board(
-        *(name, title, device, load, pack, oscillator_mhz, clock_mhz, pll_kind, pins, of_axes, reset, parts)
-    )
+    clocks = oscillator_mhz, clock_mhz, parts_mhz
+    made = Board(name, title, device, load, pack, *clocks, pll_kind, pins, of_axes, reset, parts, shared)
     made.ports()  # refuses a pin that is used twice
     return made
 

@@ -15,7 +15,7 @@ TOPS = ("passo_spi_top", "passo_wishbone", "passo_axi_lite", "passo_board")  # w
 
 @dataclass(frozen=True)
 class Design:
-    """A top module with parameters on a device, without the outputs in `left_out`.
+    """A top module with parameters on a device, without the ports in `left_out`; inputs among them are idle.
 
     Unless `all_ports` are wanted, those of parts that the core does not have are left out as well.
     """
@@ -38,11 +38,12 @@ class Design:
     def elaboration(self) -> list[str]:
         """Yosys commands that elaborate the design."""
         parameters = " ".join(f"-chparam {name} {value}" for name, value in self.parameters.items())
-        left_out = [f"delete -output {self.top}/{port}" for port in self.left_out]
-        return [f"hierarchy -top {self.top} {parameters}", *left_out, *self._without_parts()]
+        others = [port for port in self.left_out if port not in {pin.name for pin in (*INPUTS, *OUTPUTS)}]
+        left_out = [f"delete -output {self.top}/{port}" for port in others]
+        return [f"hierarchy -top {self.top} {parameters}", *left_out, *self._without_ports()]
 
-    def _without_parts(self) -> list[str]:
-        """Yosys commands that leave out the ports of parts that the core does not have."""
+    def _without_ports(self) -> list[str]:
+        """Yosys commands that leave out ports of the core."""
         if self.top not in TOPS or self.all_ports:
             return []
         channels, axes = self._parameter("CHANNELS", 1), self._parameter("AXES", 4)
@@ -57,7 +58,8 @@ class Design:
         ]
 
     def _lacks(self, pin: Pin) -> bool:
-        return bool(pin.parameter) and not self._parameter(pin.parameter.upper(), 0)
+        absent = bool(pin.parameter) and not self._parameter(pin.parameter.upper(), 0)
+        return absent or pin.name in self.left_out
 
     def _parameter(self, name: str, default: int) -> int:
         return int(self.parameters.get(name, default))

@@ -19,7 +19,7 @@ from passo.toolchain import paths
 from passo_fpga.complaints import complaints, packer_complaints
 from passo_fpga.design import Design
 from passo_fpga.devices import Device
-from passo_fpga.families.family import CONSTRAINTS, NETLIST
+from passo_fpga.families.family import CONSTRAINTS, NETLIST, PLACED
 from passo_fpga.tools import FOLDER, check, failure, relative, run, versions
 
 CELLS, REPORT = "cells.json", "report.json"
@@ -155,10 +155,17 @@ def pack(design: Design, placed: Placed, options: Sequence[str], path: Path) -> 
     """Write the bitstream to `path` unless there are complaints; return them."""
     family = design.device.family
     made = f"bitstream.{family.suffix}"
-    check(family.pack, family.packing(design.device.part, options, made), placed.folder, PACK_LOG)
-    complained = packer_complaints((placed.folder / PACK_LOG).read_text())
+    arguments = family.packing(design.device.part, options, made)
+
+    def make(folder: Path) -> None:
+        shutil.copy(placed.folder / PLACED, folder)
+        check(family.pack, arguments, folder, PACK_LOG)
+
+    settings = [*arguments, versions((family.pack,))]
+    folder = kept("pack", design.name, [placed.folder / PLACED], settings, make)
+    complained = packer_complaints((folder / PACK_LOG).read_text())
     if not complained:
-        write_bytes(path, (placed.folder / made).read_bytes())
+        write_bytes(path, (folder / made).read_bytes())
     return complained
 
 

@@ -46,8 +46,9 @@ def generate(
     axes: int | None = None,
     mhz: float | None = None,
     parts: Sequence[str] = (),
+    name: str = "",
 ) -> tuple[Design, Path]:
-    """Write both files into `folder`; return the design and the pin file.
+    """Write both files into `folder`; return the design, of that name, and the pin file.
 
     Its parameter BUILD is a checksum of all that the bitstream is made of.
     """
@@ -55,13 +56,13 @@ def generate(
     folder.mkdir(parents=True, exist_ok=True)
     pll, pins = folder / "passo_board_pll.v", folder / f"pins.{family.pins_suffix}"
     write_text(pins, pin_file(board, axes, parts))
-    write_text(pll, pll_file(board, mhz))
+    write_text(pll, pll_file(board, mhz, parts))
     design = Design(
-        name=f"board-{board.name}",
+        name=name or f"board-{board.name}",
         device=board.device,
         top=TOP.stem,
         parameters=board.parameters(axes, mhz, parts),
-        left_out=board.left_out,
+        left_out=board.left_out(parts),
         extra_sources=(TOP, paths.syn / "families" / f"{family.name}.v", pll),
     )
     return replace(design, parameters={**design.parameters, "BUILD": _checksum(design, pins)}), pins
@@ -72,9 +73,9 @@ def _checksum(design: Design, pins: Path) -> int:
     return crc32(b"\0".join([repr((design.device.name, sorted(design.parameters.items()))).encode(), *texts]))
 
 
-def pll_file(board: Board, mhz: float | None = None) -> str:
+def pll_file(board: Board, mhz: float | None = None, parts: Sequence[str] = ()) -> str:
     """Text of the PLL module with the dividers for this clock."""
-    pll = board.pll(mhz)
+    pll = board.pll(mhz, parts)
     parameters = {**pll.parameters, **board.device.family.pll_kind(board.pll_kind)}
     return PLL.format(
         table=_table(board),

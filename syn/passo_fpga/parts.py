@@ -14,6 +14,8 @@ PORTS = {  # width of each port, by part
     for part in ("inputs", "encoders", "outputs")
 }
 OF_A_CHANNEL = {"CHANNELS": 1, "CHANNELS*8": 8, "1": 1}  # widths that do not depend on the axes
+LIMITS = ("limit_low", "limit_high")
+SHARED = "shared"  # key of [inputs]: the pins of `home` are those of the limits too
 
 P = TypeVar("P")  # a pin
 PartPins = Mapping[str, tuple[P, ...]]  # of each port of a part
@@ -34,9 +36,14 @@ def chosen(text: str) -> tuple[str, ...]:
 
 
 def read(table: Table, part: str, axes: int, pin: Callable[[Table, str], P]) -> PartPins[P]:
-    """The pins of a part: a pin for each port, or a list with one for each bit, for up to `axes` axes."""
+    """The pins of a part: a pin for each port, or a list with one for each bit, for up to `axes` axes.
+
+    A port without pins is left out: an input is idle then.
+    """
     found = {}
     for port in PORTS[part]:
+        if not table.has(port):
+            continue
         most = bits(part, port, axes)
         found[port] = (pin(table, port),) if most == 1 and not table.is_list(port) else table.pins(port, pin)
         if len(found[port]) > most:
@@ -52,6 +59,6 @@ def check(board: str, there: Mapping[str, PartPins[Any]], parts: Sequence[str], 
             known = f"it has pins for {', '.join(there)}" if there else "it has none for any part"
             raise BoardError(f"board '{board}': the table has no pins for part '{part}'; {known}")
         for port, pins in there[part].items():
-            if len(pins) < bits(part, port, axes):
+            if port != "outputs" and len(pins) < bits(part, port, axes):
                 wanted = f"{bits(part, port, axes)} are needed for {axes} axes"
                 raise BoardError(f"board '{board}': {part}.{port}: {wanted}, the table has {len(pins)}")

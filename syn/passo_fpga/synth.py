@@ -2,9 +2,11 @@
 """`make synth BOARD=...`: a bitstream for a board, in build/synth."""
 
 import argparse
+import re
 import sys
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from pathlib import Path
 
 from passo.console import console, stages, table
@@ -22,6 +24,7 @@ from passo_fpga.tools import ToolError, prepare, relative, workers
 
 OUT = paths.build / "synth"
 SEEDS = range(1, 9)
+MARGIN = 0.03  # of every clock
 COMPLAINTS_SHOWN = 3  # per seed
 
 
@@ -39,9 +42,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if not options.board:
             _list()
             return 0
-        return (
-            0 if make(board(options.board), options.axes, options.clock, parts.chosen(options.parts)) else 1
-        )
+        made = make(board(options.board), options.axes, options.clock, parts.chosen(options.parts))
+        return 0 if made else 1
     except (BoardError, PllError) as error:
         print(f"make synth: {error}", file=sys.stderr)
         return 2
@@ -61,54 +63,91 @@ def _list() -> None:
             print(f"{each.name} has pins for PARTS={','.join(each.parts)}")
 
 
+@dataclass(frozen=True)
+class Bitstream:
+    """A bitstream, and what it is made of."""
+
+    path: Path
+    placed: Placed
+    capacity: int
+    unit: str  # of size and capacity
+    mhz: float  # of the core
+    seed: int
+    build: int  # as the core tells it
+
+    @property
+    def size(self) -> str:
+        """What it takes of the FPGA."""
+        used = self.placed.used
+        return f"{used:,} of {self.capacity:,} {self.unit} ({used / self.capacity:.0%})"
+
+    @property
+    def clock(self) -> str:
+        """What it reaches."""
+        reached = f"{self.placed.main_clock[0]:.1f} MHz for a clock of {self.mhz:g} MHz"
+        return f"{reached}, margin {_margin(self.placed):.1%}"
+
+
 def make(
-    chosen: Board, axes: int | None = None, mhz: float | None = None, wanted: Sequence[str] = ()
-) -> bool:
-    """Make the bitstream of the first good seed and print the result; return whether there is one."""
-    tell = stages()
-    (design, pins), pll = generate(chosen, OUT / chosen.name, axes, mhz, wanted), chosen.pll(mhz)
+    chosen: Board,
+    axes: int | None = None,
+    mhz: float | None = None,
+    wanted: Sequence[str] = (),
+    out: Path | None = None,
+    tell: Callable[[str], None] | None = None,
+) -> Bitstream | None:
+    """Make the bitstream of the first good seed, in build/synth or as `out`, and print the result.
+
+    A seed is good if every clock has MARGIN; without one, the best of those that meet all clocks is taken.
+    """
+    tell = tell or stages()
+    name = f"machine-{re.sub(r'[^A-Za-z0-9]', '_', out.stem)}" if out else f"board-{chosen.name}"
+    folder = OUT / (name if out else chosen.name)
+    (design, pins), pll = generate(chosen, folder, axes, mhz, wanted, name), chosen.pll(mhz, wanted)
     family = chosen.device.family
-    OUT.mkdir(parents=True, exist_ok=True)
-    bitstream = OUT / f"{chosen.name}.{family.suffix}"
+    bitstream = out or OUT / f"{chosen.name}.{family.suffix}"
+    bitstream.parent.mkdir(parents=True, exist_ok=True)
     bitstream.unlink(missing_ok=True)
 
     prepare(family.programs, tell)
     tell(f"{chosen.name}: synthesis")
-    made = cells(design)
+    cells_made = cells(design)
     problems = synthesis_complaints(design)
     problems += family.held_pins(
         {port: pin.pin for port, pin in chosen.ports(axes, wanted).items()}, chosen.pack
     )
     tried = {} if problems else _try_seeds(chosen, design, pins, pll.mhz, tell)
-    good = next((seed for seed, placed in tried.items() if not _problems(placed, pll.mhz)), None)
-    if good is not None:
+    meet = {seed: placed for seed, placed in tried.items() if not _problems(placed, pll.mhz)}
+    good = next((seed for seed, placed in meet.items() if _margin(placed) >= MARGIN), None)
+    taken = good if good is not None else max(meet, key=lambda seed: _margin(meet[seed]), default=None)
+    if taken is not None:
         tell("bitstream")
-        problems = pack(design, tried[good], chosen.pack, bitstream)
+        problems = pack(design, tried[taken], chosen.pack, bitstream)
 
     print(", ".join((chosen.title, f"{design.parameters['AXES']} axes", *wanted)))
     for problem in problems:
         print(f"  PROBLEM    {problem}")
     if not tried:
-        return False
-    best = tried[good] if good is not None else max(tried.values(), key=_slack)
-    used, capacity = best.used, chosen.device.capacity
-    size = f"{used:,} of {capacity:,} {family.size_unit} ({used / capacity:.0%})"
-    print(f"  build      {design.parameters['BUILD']}, as the core tells it")
-    print(f"  size       {size}, {made['FF']:,} FF, {best.bram} BRAM, {made['DSP']} DSP")
+        return None
+    best = tried[taken] if taken is not None else max(tried.values(), key=_margin)
+    facts = chosen.device.capacity, family.size_unit, pll.mhz, taken or 0, int(design.parameters["BUILD"])
+    made = Bitstream(bitstream, best, *facts)
+    print(f"  build      {made.build}, as the core tells it")
+    print(f"  size       {made.size}, {cells_made['FF']:,} FF, {best.bram} BRAM, {cells_made['DSP']} DSP")
     if moved := moved_registers(design):
         print(f"  registers  {moved} more packed into block RAMs")
-    if good is None:
+    if taken is None:
         seeds = (
             f"none of {len(tried)} seeds meets timing" if len(tried) > 1 else "the seed does not meet timing"
         )
         print(f"  FAILED     {seeds}; logs: {relative(best.folder.parent, paths.root)}")
-        return False
-    reached = f"{best.main_clock[0]:.1f} MHz for a clock of {pll.mhz:g} MHz"
-    print(f"  f_max      {reached}: seed {good}, the first that meets timing ({len(tried)} tried)")
+        return None
+    why = f"the first with {MARGIN:.0%}" if good is not None else f"the best: none has {MARGIN:.0%}"
+    print(f"  f_max      {made.clock}: seed {taken}, {why} ({len(tried)} tried)")
     if problems:
-        return False
+        return None
     print(f"  bitstream  {relative(bitstream, paths.root)} (load it with: {chosen.load})")
-    return True
+    return made
 
 
 def _try_seeds(
@@ -125,19 +164,22 @@ def _try_seeds(
         tell(f"{chosen.name}: seed {seed}: {'; '.join(problems) or f'{placed.main_clock[0]:.1f} MHz'}")
         return placed
 
+    def is_last(placed: Placed) -> bool:
+        return placed.too_large or (not _problems(placed, mhz) and _margin(placed) >= MARGIN)
+
     step = workers()
     with ThreadPoolExecutor(step) as pool:
         for first in range(0, len(SEEDS), step):
             some = SEEDS[first : first + step]
             tried |= zip(some, pool.map(run, some), strict=True)
-            if any(placed.too_large or not _problems(placed, mhz) for placed in tried.values()):
+            if any(map(is_last, tried.values())):
                 break
     return tried
 
 
-def _slack(placed: Placed) -> float:
-    """Achieved over required frequency of the worst clock."""
-    return min((achieved / wanted for achieved, wanted in placed.clocks.values()), default=0.0)
+def _margin(placed: Placed) -> float:
+    """By how much the worst clock exceeds what is required, as a ratio."""
+    return min((achieved / wanted for achieved, wanted in placed.clocks.values()), default=0.0) - 1
 
 
 def _problems(placed: Placed, mhz: float) -> tuple[str, ...]:
