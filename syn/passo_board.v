@@ -22,8 +22,9 @@ module passo_board #(
   parameter            INPUTS           = 0,
   parameter            ENCODERS         = 0,
   parameter            OUTPUTS          = 0,
-  parameter            SHARED           = 0,             // 1: the pins of `home` are those of the limits, too
   parameter            OUTPUT_PINS      = 8,             // of the core's 8 outputs
+  parameter [AXES-1:0] LOW_AT_HOME      = {AXES{1'b0}},  // axes whose limit is at the pin of their home
+  parameter [AXES-1:0] HIGH_AT_HOME     = {AXES{1'b0}},
   parameter [AXES-1:0] STEP_RESET       = {AXES{1'b0}},
   parameter [AXES-1:0] DIR_RESET        = {AXES{1'b0}},
   parameter [AXES-1:0] ENABLE_RESET     = {AXES{1'b1}}
@@ -111,6 +112,10 @@ module passo_board #(
   assign irq     = core_irq ^ (IRQ_INVERTED != 0);
   assign outputs = core_outputs[OUTPUT_PINS-1:0];
 
+  // A switch may be home and limit of its axis.
+  wire [AXES-1:0] core_low = limit_low & ~LOW_AT_HOME | home & LOW_AT_HOME;
+  wire [AXES-1:0] core_high = limit_high & ~HIGH_AT_HOME | home & HIGH_AT_HOME;
+
   passo_spi_top #(
     .CHANNELS      (1),
     .AXES          (AXES),
@@ -132,8 +137,8 @@ module passo_board #(
     .spi_miso       (miso),
     .spi_miso_enable(miso_enable),
     .sync           (sync),
-    .limit_low      (SHARED != 0 ? home : limit_low),
-    .limit_high     (SHARED != 0 ? home : limit_high),
+    .limit_low      (core_low),
+    .limit_high     (core_high),
     .home           (home),
     .alarm          (alarm),
     .probe          (probe),

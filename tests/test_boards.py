@@ -215,11 +215,10 @@ def test_top_elaborates_with_parts(name: str, parts: list[str]) -> None:
     assert {port: len(facts["bits"]) for port, facts in top["ports"].items()} == widths
     core = top["cells"]["u_core"]["connections"]
     if "inputs" in parts:
-        assert (core["limit_low"] == core["limit_high"] == core["home"]) == (name == "icebreaker")
         assert (set(core["alarm"]) == {"0"}) == (name == "icebreaker")
 
 
-POWER_UP = """\
+CELLS_OF_A_BENCH = """\
 `timescale 1ns / 1ps
 module passo_board_pll (input wire oscillator, output wire clk, output wire locked);
   assign clk = oscillator;
@@ -231,6 +230,8 @@ endmodule
 module passo_tristate_pin (input wire data, input wire enable, output wire pin);
   assign pin = enable ? data : 1'bz;
 endmodule
+"""
+POWER_UP = f"""{CELLS_OF_A_BENCH}
 module power_up;
   reg clk = 1'b0, locked = 1'b0;
   wire [2:0] step, dir, enable;
@@ -240,9 +241,9 @@ module power_up;
     .oscillator(clk), .spi_sclk(1'b0), .spi_mosi(1'b0), .spi_cs_n(1'b1), .sync(1'b0),
     .spi_miso(), .step(step), .dir(dir), .enable(enable), .running(running), .irq(irq), .led()
   );
-  always @(negedge clk) $display("%b %b", {step, dir, enable}, {running, irq});
+  always @(negedge clk) $display("%b %b", {{step, dir, enable}}, {{running, irq}});
   initial begin
-    #1 $display("%b", {step, dir, enable});
+    #1 $display("%b", {{step, dir, enable}});
     #50 locked = 1'b1;
     #1000 locked = 1'b0;
     #100 locked = 1'b1;
@@ -286,6 +287,16 @@ def test_asynchronous_inputs_set_what_configuration_sets(tmp_path: Path) -> None
     assert found >= 3
 
 
+def simulated(folder: Path, top: str, text: str, parameters: str) -> str:
+    """What a bench prints, with parameters of its board."""
+    bench, program = folder / f"{top}.v", folder / top
+    bench.write_text(text.replace("PARAMETERS", parameters))
+    sources = [*sorted(paths.rtl.glob("*.v")), TOP, bench]
+    command = ["iverilog", "-g2005", f"-I{paths.rtl}", "-s", top, "-o", program, *sources]
+    subprocess.run(list(map(str, command)), check=True)
+    return subprocess.run([str(program)], check=True, capture_output=True, text=True).stdout
+
+
 @pytest.mark.parametrize(
     ("parameters", "levels"),
     [
@@ -297,13 +308,30 @@ def test_asynchronous_inputs_set_what_configuration_sets(tmp_path: Path) -> None
 )
 def test_drives_are_off_from_configuration_on(tmp_path: Path, parameters: str, levels: str) -> None:
     """EN is high, STEP and DIR are low, or as the table says; no change when a reset starts or ends."""
-    bench, program = tmp_path / "power_up.v", tmp_path / "power_up"
-    bench.write_text(POWER_UP.replace("PARAMETERS", parameters))
-    sources = [*sorted(paths.rtl.glob("*.v")), TOP, bench]
-    command = ["iverilog", "-g2005", f"-I{paths.rtl}", "-s", "power_up", "-o", program, *sources]
-    subprocess.run(list(map(str, command)), check=True)
-    said = subprocess.run([str(program)], check=True, capture_output=True, text=True).stdout
+    said = simulated(tmp_path, "power_up", POWER_UP, parameters)
     assert said.count("\n") > 200 and set(said.split()) == {*levels.split()}
+
+
+SHARED = f"""{CELLS_OF_A_BENCH.replace("power_up.locked", "1'b1")}
+module shared;
+  reg [2:0] home = 3'd0;
+  passo_board #(.AXES(3), .INPUTS(1) PARAMETERS) u_board (
+    .oscillator(1'b0), .limit_low(3'd0), .limit_high(3'd0), .home(home));
+  initial repeat (8) begin
+    #1 $display("%b %b %b", u_board.u_core.limit_low, u_board.u_core.limit_high, u_board.u_core.home);
+    home = home + 3'd1;
+  end
+endmodule
+"""
+
+
+@pytest.mark.parametrize(("low", "high"), [(0, 0), (1, 4), (6, 3)])
+def test_a_pin_that_home_and_limit_share(tmp_path: Path, low: int, high: int) -> None:
+    """The core reads it as both, of the axes that say so; the other limits are idle."""
+    more = board("icebreaker").limits_at_home(low, high)
+    said = simulated(tmp_path, "shared", SHARED, "".join(f", .{key}({value})" for key, value in more.items()))
+    assert said.splitlines() == [f"{home & low:03b} {home & high:03b} {home:03b}" for home in range(8)]
+    assert board("tangnano9k").limits_at_home(low, high) == {}
 
 
 @each_board

@@ -21,7 +21,7 @@ from passo_stm32.grbl_board import GrblBoard, grbl_elf
 
 ROUTER = paths.examples / "machines" / "router.toml"
 TEXT = ROUTER.read_text(encoding="utf-8")
-HZ = 108_000_000  # of the board
+HZ = 96_000_000  # of the board with parts
 
 
 def made(path: Path, folder: Path) -> dict[str, list[str]]:
@@ -33,7 +33,8 @@ def made(path: Path, folder: Path) -> dict[str, list[str]]:
 def test_results(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Every port has a wire, to a pin of its own; the commands are those that make takes."""
     results = made(ROUTER, tmp_path / "router")
-    assert set(results) == {"settings.txt", "wiring.txt", "summary.txt", "flash.sh"}
+    texts = {"settings.txt", "wiring.txt", "wiring.svg", "wiring.html", "summary.txt", "flash.sh"}
+    assert set(results) == texts
     _, *rows = (re.split(r" {2,}", line) for line in results["wiring.txt"])
     wires = {row[0]: row[1:] for row in rows}
     ports = board("hx8k").ports(3, ["inputs", "outputs"])
@@ -89,7 +90,7 @@ def test_settings_are_taken_one_by_one() -> None:
 def test_the_firmware_takes_them(tmp_path: Path) -> None:
     """The image of the commands, at the core of the board, on the emulated chip; settings outlast a reset."""
     results = made(ROUTER, tmp_path)
-    definitions = make_command._definitions(read_machine(ROUTER)).items()
+    definitions = make_command.definitions(read_machine(ROUTER)).items()
     assert dict(definitions) == {
         "AXES": 3,
         "HOMES": 7,
@@ -108,7 +109,7 @@ def test_the_firmware_takes_them(tmp_path: Path) -> None:
         assert first == "[MSG:'$H'|'$X' to unlock]\nok" and set(answers) == {"ok"}
         board.restart()
         settings = board.line("$$").splitlines()
-        assert {"$0=2.500", "$29=5.000", "$5=1", "$23=3", "$110=9000.000", "$112=1200.000"} < set(settings)
+        assert {"$0=2.500", "$29=5.000", "$5=0", "$23=3", "$110=9000.000", "$112=1200.000"} < set(settings)
         assert f":{HZ}:0]" in board.line("$I")
 
 
@@ -123,10 +124,10 @@ def test_images(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch:
 
     monkeypatch.setattr(make_command.synth, "make", synth)
     path, folder = tmp_path / "one.toml", tmp_path / "out"
-    path.write_text(TEXT.replace("probe", "clock_hz = 96_000_000\nprobe", 1))
+    path.write_text(TEXT.replace("probe", "clock_hz = 84_000_000\nprobe", 1))
     arguments = ["make", str(path), "--out", str(folder)]
     assert main(arguments) == 0
-    assert asked == [(board("hx8k"), 3, 96.0, ("inputs", "outputs"), folder / "one.bin")]
+    assert asked == [(board("hx8k"), 3, 84.0, ("inputs", "outputs"), folder / "one.bin")]
     told = capsys.readouterr().out
     assert (
         "4,321 of 7,680 LC (56%); build 77" in told and "103.0 MHz for a clock of 96 MHz, margin 7.3%" in told
@@ -149,6 +150,11 @@ WRONG = [
         'board = "hx8k"\n',
         'board = "hx8k"\nclock_hz = 100_000_000\n',
         "clock_hz is 100000000, but the PLL of the board hx8k makes 100500000",
+    ),
+    (
+        'board = "hx8k"',
+        'board = "hx8k"\nclock_hz = 24_000_000',
+        "clock_hz is 24000000; the link of 9 MHz needs 36000000",
     ),
     ('board = "hx8k"', 'board = "colorlight"', "the table has no pins for part 'inputs'; it has none"),
     (
@@ -179,7 +185,7 @@ WRONG = [
     (
         "[switches]",
         '[pins]\nstep_high = "1ms"\n[switches]',
-        "pins: step_high is 108000 clocks; must be at most 65535",
+        "pins: step_high is 96000 clocks; must be at most 65535",
     ),
     ("[[axis]]", "[[axs]]", "unknown key 'axs'; did you mean axis?"),
     ("spindle_maximum = 24000", "spindle_maximum = 0", "spindle_maximum must be 1 to"),

@@ -20,6 +20,7 @@ class Drive:
     dir_setup: str  # before the active edge of STEP
     dir_hold: str  # after the end of STEP low
     enable_inverted: bool  # EN is active low
+    input: str  # logic, opto-5V, 24V, RS-422
     source: str  # of the figures
 
     @property

@@ -89,6 +89,7 @@ class MachineFile:
     laser: bool = False
     enable_inverted: bool = False
     board: str = ""  # a folder of syn/, or none
+    drive: str = ""  # a name of drives.toml, or none
 
     @property
     def has_inputs(self) -> bool:
@@ -163,6 +164,7 @@ def _machine(path: Path, data: Table) -> MachineFile:
         _flag(data, "laser", False),
         enable_inverted,
         board,
+        data.get("drive", ""),
     )
 
 

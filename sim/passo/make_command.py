@@ -17,20 +17,23 @@ from passo_fpga.tools import ToolError
 from passo_stm32.board import make_firmware
 
 from passo.console import stages
+from passo.drives import drives
 from passo.failure import BadInputError, Failure
 from passo.gcode import AXIS_LETTERS
 from passo.grbl_setup import MILLION, default_settings
 from passo.machine_file import MachineFile, read_machine
+from passo.machine_sheet import Sheet, Wire, draw, page
 from passo.native import ffi, planner
 from passo.output import empty_folder, write_text
 from passo.pins import INPUTS
 from passo.toolchain import need_repository, paths
 
 SETTINGS, WIRING, SUMMARY, COMMANDS = "settings.txt", "wiring.txt", "summary.txt", "flash.sh"
+DRAWING, PAGE = "wiring.svg", "wiring.html"
 FIRMWARE = "firmware"  # folder of its images
 NOT_BUILT = "  no images: --no-build"
 FAILED_BITSTREAM = "  bitstream  NONE: see above"
-FAST_SPI_HZ = 72_000_000  # of a core that takes 18 MHz; docs/firmware.md
+SPI_MHZ = (18, 9)  # of the firmware: the fastest that a core can take, which is a quarter of its clock
 SPEED_AT = 110  # first setting of the speeds
 NO_SETTING = 0xFF
 OUTPUTS = ("spindle on", "spindle reverse", "flood coolant", "mist coolant")  # bits 0 to 3
@@ -61,9 +64,15 @@ def make_machine(path: Path, out: Path | None = None, build: bool = True) -> boo
         raise BadInputError(f"{path}: {error}") from None
     summary = list(_summary(machine, chosen))
     folder = out or paths.results / "machines" / path.stem
+    kind = drives()[machine.drive].input if machine.drive else ""
+    title = f"{path.stem}: wiring"
+    facts = title, chosen.title, machine.drive, kind, machine.switches.inverted, wires, summary
+    sheet = Sheet(*facts)
     results = {
         SETTINGS: settings_lines(machine),
         WIRING: _aligned([("signal", "FPGA pin", "on the board", "to"), *wires]),
+        DRAWING: [draw(sheet)],
+        PAGE: [page(sheet)],
         COMMANDS: list(_commands(chosen, path.stem)),
     }
     empty_folder(folder, (*results, SUMMARY))
@@ -77,6 +86,10 @@ def make_machine(path: Path, out: Path | None = None, build: bool = True) -> boo
 
 def _check_firmware(machine: MachineFile) -> None:
     """Refuse what the image cannot do."""
+    slow, clock_hz = min(SPI_MHZ), machine.clock_hz
+    if clock_hz < 4e6 * slow:
+        needed = f"the link of {slow} MHz needs {4e6 * slow:.0f}"
+        raise BadInputError(f"{machine.path}: clock_hz is {clock_hz}; {needed}")
     if machine.settings.profile != "linear":
         profile = machine.settings.profile
         raise BadInputError(f'{machine.path}: profile is "{profile}"; the ramps of the firmware are linear')
@@ -90,15 +103,14 @@ def _images(machine: MachineFile, chosen: Board, path: Path) -> Iterator[str]:
     """Build firmware and bitstream, what is up to date excepted; a line about each."""
     tell = stages()
     tell("firmware")
-    definitions = " ".join(f"-D{name}={value}" for name, value in _definitions(machine).items())
-    said = make_firmware("GRBL=1", f"OUT={(path.parent / FIRMWARE).resolve()}", f"MACHINE={definitions}")
+    given = " ".join(f"-D{name}={value}" for name, value in definitions(machine).items())
+    said = make_firmware("GRBL=1", f"OUT={(path.parent / FIRMWARE).resolve()}", f"MACHINE={given}")
     flash = next(line.split(maxsplit=1)[1] for line in said.splitlines() if line.startswith("flash"))
     yield f"  {FIRMWARE}  {flash}"
     bitstream = path.with_suffix(f".{chosen.device.family.suffix}")
     try:
-        made = synth.make(
-            chosen, len(machine.ends), machine.clock_hz / 1e6, machine.parts, bitstream.resolve(), tell
-        )
+        core = len(machine.ends), machine.clock_hz / 1e6, machine.parts
+        made = synth.make(chosen, *core, bitstream.resolve(), tell, at_home(machine, chosen))
     except ToolError as error:
         raise Failure(str(error)) from None
     if not made:
@@ -129,13 +141,14 @@ def settings_lines(machine: MachineFile) -> list[str]:
     ]
 
 
-def _wires(machine: MachineFile, chosen: Board) -> Iterator[tuple[str, ...]]:
+def _wires(machine: MachineFile, chosen: Board) -> Iterator[Wire]:
     where, host = places(chosen.name), host_pins()
     for port, pin in chosen.ports(len(machine.settings.axes), machine.parts).items():
         if port != OSCILLATOR:
             name, index = re.fullmatch(r"(\w+?)(?:\[(\d+)\])?", port).groups()
             there = where.get(port if index else f"{name}[0]", where.get(port, ""))
-            yield port, pin.pin, there, _end(machine, chosen, host, name, int(index or 0)) or _unused(name)
+            end = _end(machine, chosen, host, name, int(index or 0)) or _unused(name)
+            yield Wire(port, pin.pin, there, end)
 
 
 def _unused(name: str) -> str:
@@ -169,7 +182,7 @@ def _summary(machine: MachineFile, chosen: Board) -> Iterator[str]:
     axes, pins = machine.settings.axes, machine.pins
     yield f"{machine.path.name}: {chosen.title}"
     with_parts = ", ".join(machine.parts) or "no parts"
-    spi = 18 if machine.clock_hz >= FAST_SPI_HZ else 9
+    spi = next(mhz for mhz in SPI_MHZ if 4e6 * mhz <= machine.clock_hz)
     clock = f"{machine.clock_hz / 1e6:g} MHz; SPI {spi} MHz"
     yield f"  core   {len(axes)} of {chosen.axes} axes, {with_parts}, {clock}"
     longest = {"STEP": max(pins.step_high, pins.step_low), "DIR": max(pins.dir_setup, pins.dir_hold)}
@@ -188,7 +201,12 @@ def _mask(machine: MachineFile, name: str) -> int:
     return sum((name in end.switches) << axis for axis, end in enumerate(machine.ends))
 
 
-def _definitions(machine: MachineFile) -> dict[str, int]:
+def at_home(machine: MachineFile, chosen: Board) -> dict[str, int]:
+    """Parameters of the board for limits that share a pin."""
+    return chosen.limits_at_home(_mask(machine, "limit_low"), _mask(machine, "limit_high"))
+
+
+def definitions(machine: MachineFile) -> dict[str, int]:
     """Of the firmware, see grbl_machine.h."""
     homed = sum((end.home is not None) << axis for axis, end in enumerate(machine.ends))
     return {

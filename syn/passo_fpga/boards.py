@@ -40,7 +40,7 @@ class Board:
     axis_pins: tuple[Mapping[str, Pin], ...]
     reset: Mapping[str, tuple[int, ...]]
     parts: Mapping[str, core_parts.PartPins[Pin]]  # pins of each optional part of the core
-    shared: bool  # the pin of a home switch is that of both limits of its axis
+    shared: bool  # the pin of a home switch may be that of a limit of its axis
 
     @property
     def axes(self) -> int:
@@ -81,6 +81,10 @@ class Board:
                     name = f"{port}[{bit}]"
                     yield f"{part}.{name}", name if count > 1 else port, pin
 
+    def limits_at_home(self, low: int, high: int) -> dict[str, int]:
+        """Parameters of the top module for limits of these axes, bit by bit, if they share pins with homes."""
+        return {"LOW_AT_HOME": low, "HIGH_AT_HOME": high} if self.shared else {}
+
     def pll(self, mhz: float | None = None, parts: Sequence[str] = ()) -> Pll:
         """PLL settings for the board's clock with these parts, or for `mhz`."""
         if mhz is not None:
@@ -103,7 +107,6 @@ class Board:
             "CLOCK_HZ": round(self.pll(mhz, parts).mhz * 1e6),
             **self.device.core,
             **{part.upper(): 1 for part in parts},
-            **({"SHARED": 1} if self.shared and "inputs" in parts else {}),
             **({"OUTPUT_PINS": len(self.parts["outputs"]["outputs"])} if "outputs" in parts else {}),
             **{f"{port.upper()}_INVERTED": 1 for port in inverted},
             **{

@@ -50,7 +50,7 @@ class Design:
         bits = {"1": 1, "CHANNELS": channels, "CHANNELS*AXES": channels * axes}
         inputs = [pin for pin in INPUTS if self._lacks(pin)]
         levels = {pin.name: f"{bits[pin.width]}'b{str(pin.idle) * bits[pin.width]}" for pin in inputs}
-        idle = [f"connect -set {name} {level}" for name, level in levels.items()]
+        idle = [f"connect -nounset -set {name} {level}" for name, level in levels.items()]
         return [
             *(f"delete -input {self.top}/{pin.name}" for pin in inputs),
             *(f"delete -output {self.top}/{pin.name}" for pin in OUTPUTS if self._lacks(pin)),

@@ -2,9 +2,10 @@
 """Generates the files of a board from its table: a Verilog file with the PLL, and a pin file."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 from zlib import crc32
 
 from passo.output import write_text
@@ -47,8 +48,9 @@ def generate(
     mhz: float | None = None,
     parts: Sequence[str] = (),
     name: str = "",
+    more: Mapping[str, int] = MappingProxyType({}),
 ) -> tuple[Design, Path]:
-    """Write both files into `folder`; return the design, of that name, and the pin file.
+    """Write both files into `folder`; return the design of that name, with `more` parameters, and the pins.
 
     Its parameter BUILD is a checksum of all that the bitstream is made of.
     """
@@ -61,7 +63,7 @@ def generate(
         name=name or f"board-{board.name}",
         device=board.device,
         top=TOP.stem,
-        parameters=board.parameters(axes, mhz, parts),
+        parameters={**board.parameters(axes, mhz, parts), **more},
         left_out=board.left_out(parts),
         extra_sources=(TOP, paths.syn / "families" / f"{family.name}.v", pll),
     )

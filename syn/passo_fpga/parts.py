@@ -15,7 +15,7 @@ PORTS = {  # width of each port, by part
 }
 OF_A_CHANNEL = {"CHANNELS": 1, "CHANNELS*8": 8, "1": 1}  # widths that do not depend on the axes
 LIMITS = ("limit_low", "limit_high")
-SHARED = "shared"  # key of [inputs]: the pins of `home` are those of the limits too
+SHARED = "shared"  # key of [inputs]: the pins of `home` may be those of limits
 
 P = TypeVar("P")  # a pin
 PartPins = Mapping[str, tuple[P, ...]]  # of each port of a part

@@ -4,10 +4,11 @@
 import argparse
 import re
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 
 from passo.console import console, stages, table
 from passo.toolchain import paths
@@ -95,15 +96,18 @@ def make(
     wanted: Sequence[str] = (),
     out: Path | None = None,
     tell: Callable[[str], None] | None = None,
+    more: Mapping[str, int] = MappingProxyType({}),
 ) -> Bitstream | None:
     """Make the bitstream of the first good seed, in build/synth or as `out`, and print the result.
+
+    `more` are parameters of the top.
 
     A seed is good if every clock has MARGIN; without one, the best of those that meet all clocks is taken.
     """
     tell = tell or stages()
     name = f"machine-{re.sub(r'[^A-Za-z0-9]', '_', out.stem)}" if out else f"board-{chosen.name}"
     folder = OUT / (name if out else chosen.name)
-    (design, pins), pll = generate(chosen, folder, axes, mhz, wanted, name), chosen.pll(mhz, wanted)
+    (design, pins), pll = generate(chosen, folder, axes, mhz, wanted, name, more), chosen.pll(mhz, wanted)
     family = chosen.device.family
     bitstream = out or OUT / f"{chosen.name}.{family.suffix}"
     bitstream.parent.mkdir(parents=True, exist_ok=True)
