@@ -53,6 +53,12 @@ def test_results(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert "12,000 steps/s of at most 200,000" in told and "EN is high from power-up on" in told
 
 
+@pytest.mark.parametrize("path", sorted((paths.examples / "machines").iterdir()), ids=lambda path: path.stem)
+def test_examples(tmp_path: Path, path: Path) -> None:
+    """Each is a machine of its board."""
+    assert made(path, tmp_path)["flash.sh"]
+
+
 def test_an_earlier_result_does_not_stay(tmp_path: Path) -> None:
     """If the file has become wrong, it is as it was; if it is right, all is new."""
     path, folder = tmp_path / "one.toml", tmp_path / "one"

@@ -90,7 +90,13 @@ def _parser() -> argparse.ArgumentParser:
     shape.add_argument("--plot", type=Path, metavar="FILE.png", help="draw it")
     made = commands.add_parser("make", help="from a machine file: bitstream, firmware, settings, wiring")
     made.set_defaults(command=_make)
-    made.add_argument("machine", type=Path, metavar="MACHINE.toml", help="machine file (docs/gcode.md)")
+    made.add_argument(
+        "machine",
+        type=Path,
+        nargs="?",
+        metavar="MACHINE.toml",
+        help="machine file (docs/gcode.md); without it, a few questions write machine.toml",
+    )
     made.add_argument("--out", type=Path, metavar="DIR", help="output folder (default build/machines/NAME)")
     made.add_argument("--no-build", action="store_true", help="no images: only check, and write the texts")
     console_options.add(commands).set_defaults(command=_console)
@@ -177,6 +183,11 @@ def _shape(options: argparse.Namespace) -> int:
 
 
 def _make(options: argparse.Namespace) -> int:
+    if not options.machine:
+        from passo.machine_questions import ask_machine
+
+        ask_machine(Path("machine.toml"))
+        return OK
     from passo.make_command import make_machine
 
     return OK if make_machine(options.machine, options.out, not options.no_build) else FAILED
