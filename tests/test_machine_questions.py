@@ -55,7 +55,7 @@ def test_every_file_can_be_made(tmp_path: Path, answers: tuple[str, ...]) -> Non
 def test_answers_are_typed(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A wrong one is asked again; a file that is there stays; without an answer there is none."""
+    """A wrong one is asked again; an earlier file stays; without an answer nothing is written."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("sys.stdin", io.StringIO("icebreker\nicebreaker\nDM542\nspindle\nyes\n7\n2\n"))
     assert main(["make"]) == 0
@@ -66,7 +66,7 @@ def test_answers_are_typed(
     )
     text = Path("machine.toml").read_text()
     assert len(read_machine(Path("machine.toml")).ends) == 2
-    assert main(["make"]) == 2 and "machine.toml: is there already" in capsys.readouterr().err
+    assert main(["make"]) == 2 and "machine.toml: exists already" in capsys.readouterr().err
     assert Path("machine.toml").read_text() == text
     Path("machine.toml").unlink()
     monkeypatch.setattr("sys.stdin", io.StringIO("hx8k\n"))

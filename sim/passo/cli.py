@@ -99,6 +99,14 @@ def _parser() -> argparse.ArgumentParser:
     )
     made.add_argument("--out", type=Path, metavar="DIR", help="output folder (default build/machines/NAME)")
     made.add_argument("--no-build", action="store_true", help="no images: only check, and write the texts")
+    checked = commands.add_parser(
+        "check", help="first power-on: try each input, output and motor of a machine"
+    )
+    checked.set_defaults(command=_check)
+    checked.add_argument("machine", type=Path, metavar="MACHINE.toml", help="machine file (docs/gcode.md)")
+    checked.add_argument(
+        "--port", type=Path, help="serial port of the grbl image; without it, the machine is simulated"
+    )
     console_options.add(commands).set_defaults(command=_console)
     firmware = commands.add_parser(
         "firmware",
@@ -191,6 +199,13 @@ def _make(options: argparse.Namespace) -> int:
     from passo.make_command import make_machine
 
     return OK if make_machine(options.machine, options.out, not options.no_build) else FAILED
+
+
+def _check(options: argparse.Namespace) -> int:
+    from passo.machine_check import check_machine
+
+    check_machine(options.machine, options.port)
+    return OK
 
 
 def _console(options: argparse.Namespace) -> int:

@@ -48,7 +48,7 @@ KINDS = {  # of axes by their letters
 def ask_machine(path: Path, ask: Callable[[str], str] = input) -> None:
     """Ask for board, drive, switches, tool and number of motors; write the file. Raises BadInputError."""
     if path.exists():
-        raise BadInputError(f"{path}: is there already; passo make {path} builds it")
+        raise BadInputError(f"{path}: exists already; passo make {path} builds it")
     try:
         chosen = board(_choice(ask, "board", tuple(boards())))
         drive = _choice(ask, "drive", tuple(drives()))

@@ -36,6 +36,7 @@ FAILED_BITSTREAM = "  bitstream  NONE: see above"
 SPI_MHZ = (18, 9)  # of the firmware: the fastest that a core can take, which is a quarter of its clock
 SPEED_AT = 110  # first setting of the speeds
 NO_SETTING = 0xFF
+REVERSE = 1  # the output that a laser does not have
 OUTPUTS = ("spindle on", "spindle reverse", "flood coolant", "mist coolant")  # bits 0 to 3
 SWITCH_PORTS = {"limit_low": "limit, low end", "limit_high": "limit, high end", "home": "home switch"}
 AXIS_PORTS = {"step": "STEP (PUL)", "dir": "DIR", "enable": "EN (ENA)"}
@@ -169,7 +170,7 @@ def _end(machine: MachineFile, chosen: Board, host: dict[str, str], name: str, i
     if name == "probe":
         return "probe" if machine.switches.probe else ""
     if name == "outputs":
-        return OUTPUTS[index] if index < len(OUTPUTS) else ""
+        return OUTPUTS[index] if index < len(OUTPUTS) and not (machine.laser and index == REVERSE) else ""
     return OTHER_PORTS.get(name, "")
 
 

@@ -146,13 +146,15 @@ static enum passo_error apply_inputs(struct passo_grbl *grbl)
 	for (uint8_t axis = 0; error == PASSO_OK && axis < grbl->path.machine.axes; axis++) {
 		const bool by_limit = (setup->homed >> axis & 1u) > (setup->homes >> axis & 1u);
 		const bool used = hard || (by_limit && passo_grbl_is_on(settings, PASSO_GRBL_HOMING));
+		const bool low = setup->limits_low >> axis & 1u, high = setup->limits_high >> axis & 1u;
 
+		/* Inputs without a switch are grounded. */
 		error = passo_configure_inputs(passo, axis,
-		    &(struct passo_input_config){.limit_low = used && (setup->limits_low >> axis & 1u),
-			.limit_high = used && (setup->limits_high >> axis & 1u),
+		    &(struct passo_input_config){.limit_low = used && low,
+			.limit_high = used && high,
 			.home = setup->homes >> axis & 1u,
-			.limit_low_inverted = inverted,
-			.limit_high_inverted = inverted,
+			.limit_low_inverted = inverted && low,
+			.limit_high_inverted = inverted && high,
 			.home_inverted = inverted,
 			.limit_soft = true});
 	}

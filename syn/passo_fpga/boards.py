@@ -82,7 +82,7 @@ class Board:
                     yield f"{part}.{name}", name if count > 1 else port, pin
 
     def limits_at_home(self, low: int, high: int) -> dict[str, int]:
-        """Parameters of the top module for limits of these axes, bit by bit, if they share pins with homes."""
+        """Parameters of the top for limits of these axes, bit by bit, if they share pins with homes."""
         return {"LOW_AT_HOME": low, "HIGH_AT_HOME": high} if self.shared else {}
 
     def pll(self, mhz: float | None = None, parts: Sequence[str] = ()) -> Pll:
