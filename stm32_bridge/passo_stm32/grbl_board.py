@@ -9,6 +9,7 @@ from passo.toolchain import paths
 
 from passo_stm32.board import make_firmware
 from passo_stm32.machine import Machine
+from passo_stm32.processor import FLASH, FLASH_SIZE
 from passo_stm32.wires import CorePins
 
 FOLDER = paths.build / "firmware_grbl"
@@ -43,11 +44,21 @@ class Answers:
 
 
 class GrblBoard(Machine):
-    """The machine from power-on to the greeting."""
+    """The machine from power-on to the greeting. `settings`: of another board, to begin with."""
 
-    def __init__(self, core: CorePins | None, elf: Path, **options: object):
+    def __init__(self, core: CorePins | None, elf: Path, settings: bytes = b"", **options: object):
         super().__init__(elf, core, **options)
+        self.write_memory(self._settings_at, settings)
         self.expect(GREETING, START)
+
+    @property
+    def settings(self) -> bytes:
+        """The pages of the flash with the settings."""
+        return self.read_memory(self._settings_at, FLASH + FLASH_SIZE - self._settings_at)
+
+    @property
+    def _settings_at(self) -> int:
+        return self.elf.symbols["settings_pages"]
 
     def line(self, text: str, seconds: float = 1.0) -> str:
         """Type a line; return all that is said until its answer."""

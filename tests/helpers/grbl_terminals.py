@@ -31,20 +31,26 @@ def console_at(link: Path, machine: MachineFile) -> Iterator[Grbl]:
 def board_at(link: Path, machine: MachineFile) -> Iterator[None]:
     """The firmware in the emulated STM32F103, as fast as that is."""
     elf = grbl_elf(paths.build / "tests" / "firmware_grbl", "AXES=3")
-    with pseudo_terminal(link) as ours, _thread(lambda over: _serve_board(elf, machine, ours, over)):
+    with model_engine(core_for(machine), machine.clock_hz) as engine, served(link, GrblBoard(engine, elf)):
         yield
 
 
-def _serve_board(elf: Path, machine: MachineFile, terminal: int, until: Callable[[], bool]) -> None:
+@contextlib.contextmanager
+def served(link: Path, board: GrblBoard) -> Iterator[None]:
+    """A board that runs, its serial line behind the pseudo-terminal."""
+    with pseudo_terminal(link) as ours, _thread(lambda over: _serve_board(board, ours, over)):
+        yield
+
+
+def _serve_board(board: GrblBoard, terminal: int, until: Callable[[], bool]) -> None:
     os.set_blocking(terminal, False)
-    with model_engine(core_for(machine), machine.clock_hz) as engine:
-        board, told = GrblBoard(engine, elf), 0
-        while not until():
-            with contextlib.suppress(BlockingIOError, OSError):
-                board.type(os.read(terminal, 4096).decode("latin-1"))
-            board.run(STEP)
-            os.write(terminal, board.output[told:].encode("latin-1"))
-            told = len(board.output)
+    told = 0
+    while not until():
+        with contextlib.suppress(BlockingIOError, OSError):
+            board.type(os.read(terminal, 4096).decode("latin-1"))
+        board.run(STEP)
+        os.write(terminal, board.output[told:].encode("latin-1"))
+        told = len(board.output)
 
 
 @contextlib.contextmanager
