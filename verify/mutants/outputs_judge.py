@@ -19,7 +19,8 @@ MODULES = (
     *("passo_pwm", "passo_core", "passo_channel"),
 )
 FULL = 1 << 24  # of the phase of a period
-PITCHES = 6  # values of a raster line
+VALUES = (6, 6, 1020)  # of a raster line, by round; the last fills the queue
+PUSHED = 60  # words of a frame
 
 
 def pulses(power: int, step: int, clocks: int, cost: int) -> np.ndarray:
@@ -45,8 +46,8 @@ class Outputs(Motions):
         at = np.searchsorted(clocks, np.arange(begin, end), side="right") - 1
         return (self.events[pin].astype(np.int64) >> number & 0xFF)[at]
 
-    def lines(self) -> None:
-        """A line of a power, one in proportion to the speed, one of a raster, with a lag or without one."""
+    def lines(self, count: int) -> None:
+        """A line of a power, one in proportion to the speed, one of a raster of `count` values, any lag."""
         rng, channel = self.rng, self.channels[0]
         axes = self.parameters.axes
         step = rng.randint(1 << 16, 1 << 20)
@@ -54,12 +55,13 @@ class Outputs(Motions):
         velocity = ONE // gap
         lag = rng.choice((0, rng.randint(1, 90)))
         reference = (velocity >> 16) + rng.getrandbits(rng.choice((20, 27, 29)))
-        pitch = rng.randint(2, 9)
+        pitch = rng.randint(2, 9) if count < PUSHED else 1
         self.write(channel, r.CHANNEL_OUTPUT_LEVELS, rng.getrandbits(8), lag, step, reference, pitch)
-        values = [rng.randint(1, 127) + 128 * (n % 2) for n in range(4 * -(-PITCHES // 4))]
+        values = [rng.randint(1, 127) + 128 * (n % 2) for n in range(4 * -(-count // 4))]
         packed = np.array(values, np.uint8).view("<u4").tolist()
-        self.link.push(channel.base + r.CHANNEL_RASTER, packed)
-        substeps = [rng.randint(20, 40), rng.randint(60, 90), pitch * PITCHES]
+        for at in range(0, len(packed), PUSHED):
+            self.link.push(channel.base + r.CHANNEL_RASTER, packed[at : at + PUSHED])
+        substeps = [rng.randint(20, 40), rng.randint(60, 90), pitch * count]
         powers = [rng.randint(1, 65535), rng.randint(1, 65535), 0]
         words = [
             r.LineOutputWord(
@@ -84,7 +86,7 @@ class Outputs(Motions):
             seen = self.level("outputs", 8 * channel.number, first, until)
             assert (seen == words[n].levels).all(), f"levels of line {n}"
         self.check_power(firsts[0], firsts[1], powers[0], step)
-        for n in range(PITCHES):
+        for n in range(count):
             at = [clocks[min(substeps[0] + substeps[1] + pitch * k, len(clocks) - 1)] for k in (n, n + 1)]
             self.check_power(at[0], min(at[1], end), 257 * values[n], step)
         self.check_proportional(firsts[1], firsts[2], powers[1], step, (step * reference << 16) // velocity)
@@ -115,8 +117,8 @@ def check(engine: Engine, parameters: Parameters, rng: random.Random) -> None:
         return
     outputs = Outputs(engine, parameters, rng)
     outputs.set_up()
-    for _ in range(3):
-        outputs.lines()
+    for count in VALUES:
+        outputs.lines(count)
 
 
 CHECK = Check("outputs", "motions", check, MODULES)
