@@ -142,7 +142,7 @@ class Programs:
         bottom = (0 if incremental else level) - rng.uniform(0.5, 9)
         kind = rng.choice(("G73", "G81", "G82", "G83", "G85", "G89"))
         words = [kind, places, f"{letters[2]}{bottom:.3f}", f"R{level:.3f}", f"F{positive(rng, 3000)}"]
-        words += [f"Q{rng.uniform(0.3, 5):.3f}"] if kind in ("G73", "G83") else []
+        words += [f"Q{rng.uniform(0.3, 5):.3f}7"] if kind in ("G73", "G83") else []  # no whole pecks
         words += [f"P{positive(rng, 2)}"] if kind in ("G82", "G89") else []
         words += [f"L{rng.randint(1, 3)}"] if rng.random() < 0.3 else []
         return " ".join([*words, rng.choice(("G98", "G99"))])
