@@ -272,7 +272,7 @@ def short_moves(path: Path, count: int, steps: int, **values: float) -> Path:
 
 # At speed the core stops; three moves that end at rest make it wait for the third.
 STOPS = {"count": 4, "steps": 1, "speed": 240, "acceleration": 391070, "jerk": 4e9}
-WAITS = {"count": 3, "steps": 2, "speed": 445, "acceleration": 207170, "jerk": 2.7185e9}
+WAITS = {"count": 3, "steps": 1, "speed": 445, "acceleration": 207170, "jerk": 2.7185e9}
 WAITS |= {"start_speed": 300, "stop_speed": 0}
 
 

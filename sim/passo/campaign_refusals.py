@@ -116,8 +116,9 @@ def _is_right(name: str, move: Move, file: Any) -> bool:
 
 
 def outruns_the_link(plans: list[list[Plan]], parameters: Parameters) -> bool:
-    """Whether somewhere half a queue of ramps is over before the driver sends the other half."""
-    rest = 1 << parameters.ramp_queue_log2 - 1
+    """Whether somewhere three quarters of a queue of ramps are over before the driver sends the last one."""
+    places = 1 << parameters.ramp_queue_log2
+    rest = places - (places + 3) // 4
     return any(
         sum(ticks[first : first + rest]) << parameters.tick_log2 < ROUND_TRIP
         for own in plans

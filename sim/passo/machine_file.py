@@ -123,6 +123,7 @@ def read_machine(path: Path) -> MachineFile:
 
 def _machine(path: Path, data: Table) -> MachineFile:
     check_known(data, FILE_KEYS)
+    wanted_hz = read_clock_hz(data) if "clock_hz" in data or "board" not in data else None
     pins, enable_inverted = _pins(data)
     tables = read_tables(data, "axis")
     if not 1 <= len(tables) <= len(AXIS_LETTERS):
@@ -140,7 +141,7 @@ def _machine(path: Path, data: Table) -> MachineFile:
     )
     switches = _switches(data)
     spindle = read_positive(data, "spindle_maximum") if "spindle_maximum" in data else 0
-    board, clock_hz = _board(data, ends, _parts(ends, switches, spindle))
+    board, clock_hz = _board(data, wanted_hz, ends, _parts(ends, switches, spindle))
     timing = within("pins", lambda: read_pins(pins, clock_hz, (ENABLE_INVERTED,)))
     deviation = _number(data, "junction_deviation", JUNCTION_DEVIATION)
     check_pins(axes, deviation, timing, clock_hz)
@@ -173,17 +174,19 @@ def _parts(ends: Sequence[AxisEnds], switches: Switches, spindle_maximum: int) -
     return tuple(part for part, needed in (("inputs", inputs), ("outputs", spindle_maximum > 0)) if needed)
 
 
-def _board(data: Table, ends: Sequence[AxisEnds], parts: Sequence[str]) -> tuple[str, int]:
-    """The board, if there is one, and the clock that the file says, or that of the board with these parts."""
+def _board(
+    data: Table, wanted: int | None, ends: Sequence[AxisEnds], parts: Sequence[str]
+) -> tuple[str, int]:
+    """The board, if there is one, and the clock that is wanted, or that of the board with these parts."""
     if "board" not in data:
-        return "", read_clock_hz(data)
+        assert wanted, "without a board the clock is read"
+        return "", wanted
     from passo_fpga import boards
     from passo_fpga.pll import PllError
     from passo_fpga.table import BoardError
 
     need_repository("a board")
     name = read_word(data, "board", tuple(boards.names()))
-    wanted = read_clock_hz(data) if "clock_hz" in data else None
     try:
         board = boards.board(name)
         parameters = board.parameters(len(ends), wanted and wanted / 1e6, parts)
