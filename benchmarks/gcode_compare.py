@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: MIT
 """`make gcode-peer`: random programs on Passo and on LinuxCNC's interpreter, also after `passo expand`.
 
-A difference that is not in the table of docs/gcode.md ends with status 1, and its program is printed.
+A difference that is not in spec/gcode_differences.toml ends with status 1, and its program is printed.
 """
 
 import argparse
 import random
 import sys
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from passo import random_cases
 
 from benchmarks import gcode_expand
-from benchmarks.gcode_motion import verdict
+from benchmarks.gcode_motion import Played, verdict
 from benchmarks.gcode_passo import play_passo
 from benchmarks.gcode_programs import random_program
 from benchmarks.gcode_rs274 import play_rs274
@@ -21,14 +21,13 @@ from benchmarks.gcode_rs274 import play_rs274
 PROGRAMS = 2000
 
 
+def _judge(program: Sequence[str], ours: Played) -> str:
+    return verdict(ours, play_rs274(program))
+
+
 def compare(program: Sequence[str]) -> str:
     """What Passo and rs274 do with a program that is not the same."""
-    return verdict(play_passo(program), play_rs274(program))
-
-
-def _print(what: str, counts: Counter[str]) -> None:
-    names = ("lines", "motions", "arcs", "refused", "different")
-    print(f"{what}: {', '.join(f'{counts[name]:,} {name}' for name in names)}")
+    return _judge(program, play_passo(program))
 
 
 def main() -> int:
@@ -37,40 +36,37 @@ def main() -> int:
     asked.add_argument("--programs", type=int, default=PROGRAMS)
     asked.add_argument("--seed", type=int, default=random_cases.seed())
     options = asked.parse_args()
+    count, seed = options.programs, options.seed
+    different = _compare("programs", count, seed, random_program, play_passo, _judge)
+    for kind, made, judge in gcode_expand.KINDS:
+        share = count // len(gcode_expand.KINDS)
+        different += _compare(f"expanded {kind}", share, seed, made, gcode_expand.play_expanded, judge)
+    return different > 0
+
+
+def _compare(
+    kind: str,
+    programs: int,
+    seed: int,
+    make: Callable[[random.Random], list[str]],
+    play: Callable[[Sequence[str]], Played],
+    judge: Callable[[Sequence[str], Played], str],
+) -> int:
+    """Compare programs of a kind; return how many differ."""
     counts: Counter[str] = Counter()
-    for number in range(options.programs):
-        program = random_program(random.Random(f"{options.seed} {number}"))
-        ours = play_passo(program)
-        found = verdict(ours, play_rs274(program))
+    for number in range(programs):
+        program = make(random.Random(f"{seed} {number}"))
+        ours = play(program)
         counts["lines"] += len(program)
         counts["motions"] += len(ours.motions)
         counts["arcs"] += sum(motion.center is not None for motion in ours.motions)
         counts["refused"] += ours.refused > 0
-        if found:
+        if found := judge(program, ours):
             counts["different"] += 1
-            print(f"program {number} of seed {options.seed}: {found}", *program, sep="\n")
-    _print(f"{options.programs:,} programs of seed {options.seed}", counts)
-    different = counts["different"]
-    for kind in gcode_expand.KINDS:
-        different += _compare_expanded(kind, options.programs // len(gcode_expand.KINDS), options.seed)
-    return different > 0
-
-
-def _compare_expanded(kind: str, programs: int, seed: int) -> int:
-    """Compare programs that are expanded; return how many differ."""
-    counts: Counter[str] = Counter()
-    for number in range(programs):
-        made = gcode_expand.random_program(kind, random.Random(f"{seed} {number}"))
-        found = gcode_expand.compare(kind, made)
-        ours = gcode_expand.play_expanded(made)
-        counts["lines"] += len(made)
-        counts["motions"] += len(ours.motions)
-        counts["arcs"] += sum(motion.center is not None for motion in ours.motions)
-        counts["refused"] += ours.refused > 0
-        if found:
-            counts["different"] += 1
-            print(f"{kind} {number} of seed {seed}: {found}", *made, sep="\n")
-    _print(f"{programs:,} {kind} of seed {seed}, expanded", counts)
+            print(f"{kind}, {number} of seed {seed}: {found}", *program, sep="\n")
+    names = ("lines", "motions", "arcs", "refused", "different")
+    told = ", ".join(f"{counts[name]:,} {name}" for name in names)
+    print(f"{programs:,} {kind} of seed {seed}: {told}")
     return counts["different"]
 
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Programs with parameters, O words and cutter compensation: expanded, then on Passo's interpreter."""
 
-import random
 import tempfile
 from collections.abc import Sequence
 from dataclasses import replace
@@ -29,18 +28,6 @@ OPTIONS = Options(
 # that cannot touch the tool at its beginning the other way.
 STRICTER = ("would cut the contour", "has no center with this tool")
 
-KINDS = ("programs", "contours")  # with parameters and O words, with cutter compensation
-
-
-def random_program(kind: str, rng: random.Random) -> list[str]:
-    """A program of a kind."""
-    return contour_program(rng) if kind == "contours" else language_program(rng)
-
-
-def compare(kind: str, program: Sequence[str]) -> str:
-    """What Passo and rs274 do with it that is not the same."""
-    return compare_contour(program) if kind == "contours" else compare_expanded(program)
-
 
 def play_expanded(program: Sequence[str], options: Options = OPTIONS) -> Played:
     """The motions of a program, labelled with its lines, and the line at which it is refused."""
@@ -59,9 +46,7 @@ def play_expanded(program: Sequence[str], options: Options = OPTIONS) -> Played:
     return Played(passo.motions)
 
 
-def compare_expanded(program: Sequence[str]) -> str:
-    """What an expanded program and rs274 do that is not the same."""
-    ours = play_expanded(program)
+def _judge_expanded(program: Sequence[str], ours: Played) -> str:
     if ours.why.startswith("endless"):
         return ""  # rs274 would go on
     theirs = play_rs274(program)
@@ -70,11 +55,27 @@ def compare_expanded(program: Sequence[str]) -> str:
     return verdict(ours, theirs)
 
 
-def compare_contour(program: Sequence[str]) -> str:
-    """The same with cutter compensation, where rs274 names a motion, and what it refuses, by a later line."""
-    ours, theirs = play_expanded(program), play_rs274(program)
+def _judge_contour(program: Sequence[str], ours: Played) -> str:
+    theirs = play_rs274(program)
     if ours.refused and (theirs.refused or any(reason in ours.why for reason in STRICTER)):
         return ""
     return verdict(
         *(Played([replace(m, label=1) for m in p.motions], min(p.refused, 2), p.why) for p in (ours, theirs))
     )
+
+
+def compare_expanded(program: Sequence[str]) -> str:
+    """What an expanded program and rs274 do that is not the same."""
+    return _judge_expanded(program, play_expanded(program))
+
+
+def compare_contour(program: Sequence[str]) -> str:
+    """The same with cutter compensation, where rs274 names a motion, and what it refuses, by a later line."""
+    return _judge_contour(program, play_expanded(program))
+
+
+# Name, generator and judge of programs with parameters and O words, and with cutter compensation.
+KINDS = (
+    ("programs", language_program, _judge_expanded),
+    ("contours", contour_program, _judge_contour),
+)

@@ -50,7 +50,6 @@ static enum passo_gcode_stroke retract(struct passo_gcode_cycle *cycle)
 /* The next step, which may turn out not to move. */
 static enum passo_gcode_stroke take_step(struct passo_gcode_cycle *cycle)
 {
-	const bool clears = cycle->kind == PASSO_GCODE_G(83, 0);
 	int64_t *height = &cycle->at[cycle->axis];
 
 	switch (cycle->step++) {
@@ -74,8 +73,8 @@ static enum passo_gcode_stroke take_step(struct passo_gcode_cycle *cycle)
 	case DWELL:
 		return PASSO_GCODE_STROKE_DWELL;
 	case LIFT:
-		if (!is_through(cycle))
-			*height = clears ? cycle->level : lower(cycle->depth + CLEARANCE, cycle->level);
+		if (!is_through(cycle) && cycle->kind == PASSO_GCODE_G(83, 0))
+			*height = cycle->level;
 		return PASSO_GCODE_STROKE_RAPID;
 	case RETURN:
 		if (!is_through(cycle)) {
