@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 from passo.build import Parameters
-from passo.driver import Driver, DriverError
+from passo.driver import Driver, DriverError, Source
 from passo.engine import model_engine
 from passo.machine import Machine, Switch
 from passo.native import ffi
@@ -283,6 +283,25 @@ def test_estop_in_the_middle(at: int) -> None:
     assert_origin(driver, 0, -1000)
 
 
+@pytest.mark.parametrize(("pin", "level", "name"), [("estop_n", 0, "ESTOP"), ("alarm", 1, "ALARM")])
+def test_the_cause_between_two_polls(pin: str, level: int, name: str) -> None:
+    """Whichever poll is next, also one that begins the next phase: it tells why."""
+    for polls in range(1, 200):
+        machine = machine_of(Switch("home", 0, -100))
+        driver = driver_of(machine)
+        array = homes(home(distance=-1000, back_off=20, pull_off=20))
+        driver.call("home", array, 1)
+        for _ in range(polls):
+            driver.poll()
+            machine.run(CLOCK_HZ // 1000)
+        machine.set(pin, level)
+        machine.run(CLOCK_HZ // 10_000)
+        if (told := finish(driver)) == "OK":
+            break  # it was over
+        assert told == name == driver.fault
+    assert 40 < polls < 199
+
+
 def test_a_limit_in_the_way_of_home() -> None:
     """The wrong switch: LIMIT, and home may be tried again from there."""
     machine = machine_of(Switch("home", 0, -3000), Switch("limit_low", 0, -1000))
@@ -454,6 +473,12 @@ def test_what_a_jog_refuses() -> None:
     assert error_of(driver, "jog", jog(steps=3)) == error_of(driver, "jog", jog()) == "MOVING"
     assert error_of(driver, "jog_cancel") == "NOT_TURNING"
     driver.wait(1)
+    source = Source([], [])
+    driver.call("stream", source.c)
+    assert error_of(driver, "jog_cancel") == "NOT_TURNING"  # before its first frame, too
+    driver.call("stop")
+    finish(driver)
+    driver.call("clear")
     driver.call("jog", jog(steps=2000))
     assert error_of(driver, "jog_speed", Q32) == "NOT_TURNING"
     driver.call("stop")

@@ -116,6 +116,8 @@ enum passo_error passo_jog_cancel(struct passo *passo)
 
 	if (error != PASSO_OK)
 		return error;
+	if (passo->stream != PASSO_STREAM_NONE)
+		return PASSO_ERROR_NOT_TURNING;
 	const bool is_goto = passo->task.kind == PASSO_TASK_GOTO;
 	if (is_goto)
 		passo->task.kind = PASSO_TASK_NONE;

@@ -55,6 +55,14 @@ enum passo_error passo_driver_begin(struct passo *passo, struct passo_task task,
 	return settle(passo, error);
 }
 
+/* Why the channel stopped. */
+static enum passo_error cause(const struct passo *passo)
+{
+	const enum passo_error error = passo_driver_fault_of(passo->snapshot.cause);
+
+	return error != PASSO_OK ? error : PASSO_ERROR_STOPPED;
+}
+
 /* A motion of the task has ended. */
 static enum passo_error next(struct passo *passo)
 {
@@ -65,10 +73,8 @@ static enum passo_error next(struct passo *passo)
 		error = passo_read_trigger(passo, &report);
 	if (error != PASSO_OK)
 		return error;
-	if (passo_driver_is_stopped(passo) && !report.fired) {
-		error = passo_driver_fault_of(passo->snapshot.cause);
-		return error != PASSO_OK ? error : PASSO_ERROR_STOPPED;
-	}
+	if (passo_driver_is_stopped(passo) && !report.fired)
+		return cause(passo);
 	if (report.fired) {
 		passo->task.armed = false;
 		error = passo_clear(passo);
@@ -96,7 +102,10 @@ enum passo_error passo_driver_task(struct passo *passo, enum passo_error error)
 	if (passo_driver_in_motion(passo))
 		return PASSO_OK;
 	passo->task.inside = true;
-	error = settle(passo, next(passo));
+	error = next(passo);
+	if (error == PASSO_ERROR_STOPPED && passo_driver_look(passo, false) == PASSO_OK)
+		error = cause(passo); /* between two motions */
+	error = settle(passo, error);
 	if (error != PASSO_OK)
 		passo->fault = error;
 	return error;

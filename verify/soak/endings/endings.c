@@ -140,7 +140,9 @@ static void hold(struct bench *bench, struct scene *scene)
 	struct passo *passo = &bench->passo;
 
 	bench_must(bench, "hold", passo_hold(passo));
-	pass(bench, scene, scene->hold_clocks + SETTLED);
+	/* on its way down it may meet its switch, and stops from there */
+	pass(bench, scene,
+	    scene->hold_clocks + (is_task(scene->operation) ? scene->stop_clocks : 0u) + SETTLED);
 	const int32_t there = bench->axis[0].position;
 	pass(bench, scene, 10u * MILLISECOND);
 	if (bench->axis[0].position != there && scene->operation != OP_HOME)

@@ -39,7 +39,8 @@ static bool is_one_way(const struct pulses *pulses, size_t from, size_t to)
 	return true;
 }
 
-/* Mean speeds over (i, j) and (j, k) differ by at most acceleration (k - i) / 2. */
+/* Mean speeds over (i, j) and (j, k) differ by at most acceleration (k - i) / 2, and by what whole clocks do
+ * to either: one of the core, and one of the time scale, which lasts `top` / v of the core's. */
 double pulses_slope(const struct pulses *pulses, double clock_hz, double limit, double top, bool scaled)
 {
 	double most = 0;
@@ -52,7 +53,7 @@ double pulses_slope(const struct pulses *pulses, double clock_hz, double limit, 
 			const double v = (double)span / seconds(pulses, i, j, clock_hz);
 			const double w = (double)span / seconds(pulses, j, k, clock_hz);
 			const double clock =
-			    (scaled ? (v + w) * top : v * v + w * w) / (double)span / clock_hz;
+			    (v * v + w * w + (scaled ? (v + w) * top : 0)) / (double)span / clock_hz;
 			const double excess = fabs(w - v) - clock - 2 * limit * pulses->tick / clock_hz;
 			most = fmax(most, excess / (limit * seconds(pulses, i, k, clock_hz) / 2));
 		}
