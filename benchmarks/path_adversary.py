@@ -35,6 +35,7 @@ FIGURES: dict[str, Callable[[Measured], float]] = {
     "look_ahead": lambda one: one.look_ahead,
     "shaped": lambda one: one.shaped,
     "soft": lambda one: one.soft,
+    "paced": lambda one: one.paced,
     **{name: lambda one, name=name: one.share(name) for name in ("speed", "acceleration", "jerk")},
 }
 

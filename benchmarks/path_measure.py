@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Measures a path: its time against the fastest motion, and its pins against the limits of the axes."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from passo.axis_judge import Marks, Share, shares
 from passo.driver import DriverError
@@ -16,9 +16,11 @@ from benchmarks.path_reference_jerk import soft_seconds
 from tests.helpers.path_player import Player
 
 UNLIMITED_AIM, LOOK_AHEAD_AIM = 1.02, 1.05
+FAST_POLLS = 8000  # per second, of a host that can send any path: the fastest motion knows of no host
+PACED_AIM = 2.0  # what the polls of the case cost of the time
 SOFT_AIM = 1.6  # cosine ramps, and half of the jerk in curves
 SHAPED_AIM = 2.1  # a ramp over several lines has the slope of the weakest axis, doubled as often as possible
-KINDS = ("underrun", "fault", "slow", "slow48", "speed", "acceleration", "jerk")
+KINDS = ("underrun", "fault", "slow", "slow48", "paced", "speed", "acceleration", "jerk")
 SHORTEST = 0.03  # s: in less, ticks count
 LONGEST = 4.0  # s: what takes longer is not played
 
@@ -33,6 +35,7 @@ class Measured:
     look_ahead: float = 0.0
     shaped: float = 0.0  # all lines known, of another profile than linear: the reference is a bound
     soft: float = 0.0  # the same of profile jerk, against a fast motion with that
+    paced: float = 0.0  # with the polls of the case, of the time with FAST_POLLS
     shares: list[Share] = field(default_factory=list)
     fault: str = ""  # the core stopped, or the end is not exact
 
@@ -54,6 +57,8 @@ class Measured:
             found["slow"] = f"{self.shaped:.4f} times the optimum with a shape, all lines known"
         if self.soft > SOFT_AIM:
             found["slow"] = f"{self.soft:.4f} times a fast motion with this jerk, all lines known"
+        if self.paced > PACED_AIM:
+            found["paced"] = f"{self.paced:.4f} times as long as with {FAST_POLLS} polls"
         for share in sorted(self.shares, key=lambda share: share.share):
             if share.share > share.bound:
                 found[share.name] = str(share)
@@ -76,7 +81,10 @@ def compare(case: Case) -> Measured:
 
 def _ratios(measured: Measured, lines: list[Line], settings: PathSettings, fits: bool) -> None:
     known = max(len(lines) + 4, LOOK_AHEAD)  # with fewer places the pace allows fewer ramps
-    ratio = plan(lines, settings, known).seconds / measured.optimum
+    paced = plan(lines, settings, known).seconds
+    settings = replace(settings, polls=FAST_POLLS)
+    seconds = plan(lines, settings, known).seconds
+    ratio, measured.paced = seconds / measured.optimum, paced / seconds
     if settings.profile == "linear":
         measured.unlimited = ratio
         if fits:

@@ -126,6 +126,7 @@ def search(
         measured = check(case)
         seen(case, measured)
         target(max(measured.unlimited, measured.soft), label="slow")
+        target(measured.paced, label="paced")
         target(measured.share("acceleration"), label="acceleration")
         for kind, text in measured.faults.items():
             if kind not in known:

@@ -6,8 +6,8 @@
 
 #include "passo_path_private.h"
 
-/* A line that takes longer than this number can be sent in is not merged. */
-#define LINES_MERGED 16u
+/* A line that takes longer than this part of a second is not merged. */
+#define MERGED_PER_SECOND 128u
 
 static struct passo_path_item *newest(const struct passo_path_planner *path)
 {
@@ -55,7 +55,7 @@ static enum passo_plan_error add(struct passo_path_planner *path, const struct p
 	path->begins = path->rest;
 	path->feed = move->feed;
 	path->wanted = item->feed;
-	path->bulge = 0;
+	path->merged = (struct passo_path_merged){.off = 0};
 	passo_path_pace_line(path, item);
 	passo_path_limit(path, path->added);
 	if (!item->rest)
@@ -67,7 +67,7 @@ static enum passo_plan_error add(struct passo_path_planner *path, const struct p
 	path->added++;
 	path->open = true;
 	path->waits = path->waits && path->unsettled > 0 && path->added - path->planned < path->capacity;
-	if (path->tolerance == 0 || passo_path_clocks(item) >= (uint64_t)LINES_MERGED * path->line_clocks)
+	if (path->tolerance == 0 || passo_path_clocks(item) >= path->machine.clock_hz / MERGED_PER_SECOND)
 		passo_path_close(path); /* too long for that to be of use */
 	return PASSO_PLAN_OK;
 }
@@ -91,8 +91,8 @@ static bool merge(struct passo_path_planner *path, const struct passo_path_move 
 {
 	if (!is_open(path, move))
 		return false;
-	uint64_t bulge = path->bulge;
-	if (passo_path_off(path, move->target, &bulge) >= path->tolerance)
+	const struct passo_path_merged merged = passo_path_off(path, move->target);
+	if (merged.off >= path->tolerance)
 		return false;
 	const struct passo_path_place at = path->at;
 	const uint32_t dwell = path->dwell;
@@ -102,7 +102,7 @@ static bool merge(struct passo_path_planner *path, const struct passo_path_move 
 	path->rest = path->begins;
 	path->dwell = passo_path_item(path, path->added)->dwell;
 	if (add(path, move) == PASSO_PLAN_OK) {
-		path->bulge = bulge;
+		path->merged = merged;
 		return true;
 	}
 	path->added++;

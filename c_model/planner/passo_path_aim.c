@@ -6,6 +6,8 @@
 
 /* Parts that are shorter share a ramp, unless the speed is lowest between them. */
 #define TICKS_MIN 32u
+/* A rise by less than this part of the square is not worth a ramp. */
+#define LEVEL 128u
 /* Shorter ramps are linear whatever the shape. */
 #define SHAPED_TICKS_MIN 64u
 
@@ -76,6 +78,22 @@ static bool is_enough(const struct passo_path_planner *path, const struct passo_
 	    || is_long(path, aim->square, part);
 }
 
+static bool is_near(uint64_t square, uint64_t higher)
+{
+	return higher >= square && higher - square <= square / LEVEL;
+}
+
+/* Whether the path may as well keep its speed over an item: it never has to be slower there, and can hardly
+ * be faster at its end or anywhere before. */
+static bool is_level(uint64_t square, uint64_t end, const struct passo_path_part *parts, unsigned count)
+{
+	for (unsigned i = 0; i < count; i++) {
+		if (!is_near(square, parts[i].square))
+			return false;
+	}
+	return is_near(square, end);
+}
+
 /* Follows the profile, at most to the start of item `before`. */
 static struct passo_path_aim find_aim(
     const struct passo_path_planner *path, enum passo_path_need need, uint32_t before)
@@ -89,9 +107,15 @@ static struct passo_path_aim find_aim(
 
 		if (index == before)
 			return aim;
-		const unsigned count = passo_path_parts(
+		unsigned count = passo_path_parts(
 		    path, index, left, aim.square, need == PASSO_PATH_FULL && index == path->planned, parts);
 
+		if ((aim.length == 0 || aim.kind == PASSO_PATH_FLAT)
+		    && is_level(aim.square, passo_path_end_square(path, index), parts, count)) {
+			parts[0] = (struct passo_path_part){
+			    PASSO_PATH_FLAT, left, aim.square, parts[0].slope, .early = parts[0].early};
+			count = 1;
+		}
 		for (unsigned i = 0; i < count; i++) {
 			if (!is_due(path, &aim, index, &parts[i], need)) {
 				aim.open = true;

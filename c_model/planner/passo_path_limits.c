@@ -46,26 +46,33 @@ static bool find_direction(const struct passo_path_planner *path, const int64_t 
 	return true;
 }
 
-/* The path that a line replaces is below a parabola over it, `bulge` x (l - x). If that is so of the last
- * line, it is of the one to a new end, for a parabola that is also above the end of the last one: so it is
+/* Two bounds, of which the smaller one holds. The last line is off the new one by no more than its end, which
+ * adds up. And the path that a line replaces is below a parabola over it, `bulge` x (l - x): if that is so of
+ * the last line, it is of the new one, for a parabola that is also above the end of the last one: so it is
  * above the line from there to the new end. */
-uint64_t passo_path_off(const struct passo_path_planner *path, const int64_t *target, uint64_t *bulge)
+struct passo_path_merged passo_path_off(const struct passo_path_planner *path, const int64_t *target)
 {
+	struct passo_path_merged merged = path->merged;
 	const struct passo_path_place *end = &path->at;
 	int32_t unit[PASSO_AXES_MAX];
 	uint64_t length = 0, turn = 0;
 
 	if (!find_direction(path, path->before.target, target, unit, &length) || length <= end->length)
-		return UINT64_MAX;
+		return (struct passo_path_merged){.off = UINT64_MAX};
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
 		const uint64_t change = passo_path_size((int64_t)unit[axis] - end->direction[axis]);
 
 		turn += change * change;
 	}
-	turn = ((uint64_t)passo_isqrt64(turn) + 1) << 32;
-	*bulge = passo_path_larger(
-	    turn / (length - end->length), passo_mul_div(*bulge, end->length, length) + turn / length);
-	return passo_mul_shift(passo_mul_shift(*bulge, length, PASSO_PATH_UNIT_BITS), length, 34);
+	turn = (uint64_t)passo_isqrt64(turn) + 1;
+	merged.off += passo_mul_shift(turn, end->length, PASSO_PATH_UNIT_BITS);
+	turn <<= 32;
+	merged.bulge = passo_path_larger(
+	    turn / (length - end->length), passo_mul_div(merged.bulge, end->length, length) + turn / length);
+	const uint64_t top =
+	    passo_mul_shift(passo_mul_shift(merged.bulge, length, PASSO_PATH_UNIT_BITS), length, 34);
+	merged.off = passo_path_smaller(merged.off, top);
+	return merged;
 }
 
 /* Steps of each axis, by rounding the target; returns the most. */

@@ -206,6 +206,16 @@ static inline unsigned passo_path_halves(const struct passo_path_item *item)
 	return PASSO_PATH_HALVES > 1 && item->curve.halved ? 2 : 1;
 }
 
+/* The slope that an item had before its end became a curve. */
+static inline uint64_t passo_path_straight_slope(const struct passo_path_item *item)
+{
+#ifdef PASSO_LINEAR_PATHS
+	return item->slope;
+#else
+	return item->slope / (4u - item->eased) * 4;
+#endif
+}
+
 /* Sets the slope of an axis of an item, beside its curve. */
 void passo_path_add_slope(struct passo_path_item *item, uint32_t axis, uint32_t share, uint64_t slope);
 
@@ -259,9 +269,9 @@ uint64_t passo_path_shaped_corner(const struct passo_path_planner *path,
 uint64_t passo_path_limit_corner(
     struct passo_path_planner *path, const int32_t *unit, uint64_t length, struct passo_path_item *item);
 
-/* By how much a line from the start of the last one, to a target, is off that one and all that it replaces,
- * at most: UQ32.16 substeps; saturates if it is not longer. */
-uint64_t passo_path_off(const struct passo_path_planner *path, const int64_t *target, uint64_t *bulge);
+/* By how much a line from the start of the last one, to a target, is off that one and all that it replaces;
+ * saturates if it is not longer. */
+struct passo_path_merged passo_path_off(const struct passo_path_planner *path, const int64_t *target);
 
 /* Sets the limits of an item, `top` and, unless the path rests there, `corner`; those before it are known. */
 void passo_path_limit(struct passo_path_planner *path, uint32_t index);

@@ -67,7 +67,8 @@ static unsigned half_parts(const struct passo_path_item *item, unsigned half, ui
 
 	/* above it where a line at whose end the path could rest has become part of a curve */
 	if (square >= highest)
-		return put(parts, 0, PASSO_PATH_DOWN, left, end, square > highest ? item->slope : steepest);
+		return put(parts, 0, PASSO_PATH_DOWN, left, end,
+		    square > highest ? passo_path_straight_slope(item) : steepest);
 	top = passo_path_larger(top, square);
 	const uint64_t up = passo_path_slope(item, half, true, square, left);
 	const uint64_t rise = square + passo_path_gain(up, left);

@@ -109,6 +109,12 @@ struct passo_path_place {
 	uint32_t line_credit; /* clocks that the last lines have left, see passo_path_pace.c */
 };
 
+/* By how much a line is off those that it replaces, at most. Both hold. */
+struct passo_path_merged {
+	uint64_t off;   /* UQ32.16 substeps */
+	uint64_t bulge; /* UQ.46 per substep: this times the distances to both of its ends */
+};
+
 /* All members are private. Items are counted from 0 and never wrap within a motion. */
 struct passo_path_planner {
 	struct passo_machine machine;
@@ -123,8 +129,7 @@ struct passo_path_planner {
 	struct passo_path_place at, before; /* its end and its start */
 	uint64_t deviation, tolerance;      /* UQ32.16 substeps */
 	uint64_t own_tolerance;             /* the same: that of the settings */
-	uint64_t bulge;  /* UQ.46 per substep: the last line is off those that it replaces by no more than
-	                    this times the distances to both of its ends */
+	struct passo_path_merged merged;    /* by how much the last line is off those that it replaces */
 	uint64_t feed;   /* of the last line, as it was given */
 	uint32_t wanted; /* the same, UQ0.32 */
 	bool begins;     /* the path rested before the last line */

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The rounding that a path permits, from geometry alone.
 
-Points within a twentieth of the junction deviation `d` of the line past them are no corners. Any other
+Points within a twentieth of the junction deviation `d` of the line past them, at the same feed on both sides,
+are no corners. Any other
 corner turns the direction by `c`, the difference of two unit vectors. The arc that touches both lines and
 passes the corner at `d` has the radius `R = d s / (1 - s)`, `s` the sine of half the angle between the
 lines; while it turns it advances by `l = R |c|`. So the speed `v` at the corner is at most `v^2 = a l /
@@ -87,16 +88,23 @@ def points_of(
     return points[kept], feed[np.array(kept[1:], int) - 1]
 
 
-def corners_of(points: np.ndarray, off: float) -> np.ndarray:
-    """The points that are corners, with both ends: those between are near the line past them."""
+def corners_of(points: np.ndarray, feed: np.ndarray, off: float) -> np.ndarray:
+    """The points that are corners, with both ends: those between are near the line past them.
+
+    Of lines of several feeds only a straight one is one, as with LinuxCNC's `G64 P Q`.
+    """
     kept, first, last = [0], 0, len(points) - 1
     while first < last:
         end = first + 1
-        while end < last and _is_line(points[first : end + 2], off):
+        while end < last and _is_line(points[first : end + 2], off if _is_even(feed[first:end + 1]) else SHORTEST):
             end += 1
         kept.append(end)
         first = end
     return np.array(kept)
+
+
+def _is_even(values: np.ndarray) -> bool:
+    return bool((values == values[0]).all())
 
 
 def _is_line(points: np.ndarray, off: float) -> bool:
@@ -120,7 +128,7 @@ def rounded(lines: Sequence[Line], settings: PathSettings, begin: Sequence[float
     """The path and its roundings."""
     permitted = float(settings.junction_deviation)
     points, feed = points_of(lines, len(settings.axes), begin)
-    kept = corners_of(points, permitted * SHARE)
+    kept = corners_of(points, feed, permitted * SHARE)
     delta = np.diff(points[kept], axis=0)
     length = np.linalg.norm(delta, axis=1)
     unit = delta / length[:, None]
