@@ -46,12 +46,14 @@ def events(part: Part) -> int:
 
 
 def show_machine(parts: Sequence[Part], numbers: dict[str, Any]) -> None:
-    """Print what was judged of a machine, and the numbers of its path."""
+    """Print what was judged of a machine, and the numbers of its path, if they were measured."""
     judged = table("A machine", "what", *(part.name for part in parts))
     judged.add_row("events", *(f"{events(part):,}" for part in parts))
     for key, text in MACHINE_JUDGED.items():
         judged.add_row(text, *(f"{part.counts[key]:,}" for part in parts))
     console.print(judged)
+    if not numbers:
+        return
     thread, laser, raster = numbers["thread"], numbers["laser"], numbers["raster"]
     bound = table("Bound to the machine", "what", "measured", "ok")
     bound.add_row(

@@ -54,7 +54,7 @@ HISTORIES = {
     "machine on verilator": 170,
     "machine on icarus": 170,
 }
-PARTS = ("model", "driver", *DRIVER_KINDS, "verilator", "icarus", "machine", "defects")
+PARTS = ("model", "driver", *DRIVER_KINDS, "verilator", "icarus", *KINDS, "defects")
 
 
 def soak(seed: int, only: Sequence[str], scale: float, jobs: int) -> bool:
@@ -76,9 +76,8 @@ def soak(seed: int, only: Sequence[str], scale: float, jobs: int) -> bool:
     if "icarus" in only:
         parts.append(play_icarus(program, seed, wanted["icarus"], jobs))
     numbers: dict[str, Any] = {}
-    machine = []
+    machine = [play_model(program, seed, wanted[kind], jobs, kind) for kind in KINDS if kind in only]
     if "machine" in only:
-        machine = [play_model(program, seed, wanted[kind], jobs, kind) for kind in KINDS]
         number = wanted["machine on verilator"]
         machine.append(play_machine_on_verilator(program, seed, number, jobs))
         machine.append(play_icarus(program, seed, wanted["machine on icarus"], jobs, machine=True))
