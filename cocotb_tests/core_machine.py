@@ -6,6 +6,7 @@ from contextlib import suppress
 from random import Random
 
 from passo import registers as r
+from passo.cocotb.clocks import read
 from passo.link import RefusedError
 from passo.registers import Cause, LineOutputWord, State, TriggerAction, TriggerSource
 
@@ -94,6 +95,25 @@ def a_stop_of_any_part_ends_steps_and_power(core: Core) -> None:
         channel.link.write(encoder_address(channel, 1, r.ENCODER_SETUP), 0)
         channel.clear()
     check_power(core)
+
+
+@core_test
+def the_e_stop_needs_no_clock(core: Core) -> None:
+    """Drives and power are off before the next edge of the clock."""
+    core.channel().pins(PinTiming())
+    channel = jog(core)
+    core.run_until(lambda: read(core.dut.power), 4000)
+    assert read(core.dut.enable) != 0
+    pressed = core.clock
+    core.set("estop_n", 0)
+    core.run_quarters(1)
+    assert core.clock == pressed and read(core.dut.power) == 0 and read(core.dut.enable) == 0
+    core.run_quarters(3)
+    core.run(100)
+    core.set("estop_n", 1)
+    core.run(20)
+    core.link.write(r.ADDRESS_ESTOP_CLEAR, 1)
+    check_stopped(core, channel, Cause.ESTOP)
 
 
 @core_test

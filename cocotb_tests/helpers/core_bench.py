@@ -128,6 +128,10 @@ class Core(Host):
         """Clocks since the first reset."""
         return read(self.dut.clock)
 
+    def run_quarters(self, count: int) -> None:
+        """Let quarters of a clock pass: after a falling edge the first has none."""
+        self._thread.wait(wait(count * PERIOD // 4))
+
     def sync(self, level: bool) -> None:
         """Set the sync input."""
         self.started = self.clock
