@@ -21,6 +21,7 @@ from verify.mutants import (
     lines_judge,
     motions_judge,
     outputs_judge,
+    page,
     registers_judge,
     shapes_judge,
     timings_judge,
@@ -37,7 +38,7 @@ from verify.soak.program import build
 
 SEED = random_cases.seed()
 # The smallest core, two mutants of each module; in any other folder than those of `make verify ONLY=mutants`.
-SAMPLE = Core("sample", SETS[0], PLAIN.modules)
+SAMPLE = Core("sample", SETS[0], (*PLAIN.modules, "passo_lines", "passo_tables"))
 EACH = 2
 FILE = "passo_gcode_angle.c"
 
@@ -180,3 +181,28 @@ def test_the_tests_kill_mutants_in_c(tmp_path: Path) -> None:
     print(answers)
     assert answers[0] == ""
     assert any(answers[1:])
+
+
+def test_the_page_keeps_what_was_not_played(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rows and survivors stay until as many mutants have been played again."""
+    kept = tmp_path / "mutants.md"
+    kept.write_text(f"# Figures\n\n{page.BEGIN}{page.END}")
+    monkeypatch.setattr(page, "PAGE", kept)
+    played = page.Score(
+        "passo_axis", 4, {"pins": 2, "proofs": 1}, living=[("passo_axis: inv, a.v:1", "dull")]
+    )
+    other = page.Score("passo_crc", 2, {"frames": 1}, equal=1)
+    of_c = page.Score("passo_math.c", 3, {"tests": 2}, living=[("passo_math.c a < b | c", "no property")])
+    page.write([played, other], [of_c], 1)
+    before = kept.read_text()
+    assert "| `passo_axis` | 4 | 2 | 0 | 0 | 0 | 1 | 0 | 0 | 1 | 75% |" in before
+    assert "killed in the RTL: 4 of 5 (80.0%; 1 more are equivalent); in the C sources:\n2 of 3" in before
+    page.write([page.Score("passo_axis", 4, waiting=4), other], [], 1)
+    assert kept.read_text() == before
+    page.write([page.Score("passo_axis", 4, {"pins": 4}), other], [], 1)
+    after = kept.read_text()
+    assert (
+        "| `passo_axis` | 4 | 4 | 0 | 0 | 0 | 0 | 0 | 0 | 0 | 100% |" in after
+        and "passo_axis: inv" not in after
+    )
+    assert "* passo_math.c a &lt; b \\| c" in after

@@ -9,7 +9,7 @@ from passo.compiler import CC, call
 
 from verify.mutants.c_mutate import DECLARED
 from verify.mutants.c_source import FOLDER, FOLDERS, CMutant
-from verify.mutants.fates import Fates
+from verify.mutants.fates import Fates, hash_of
 
 NAME = "object code"
 CHOSEN = "static inline int passo_at(int number) {{ return number == {number}; }}\n"
@@ -31,15 +31,18 @@ def judge(mutants: Sequence[CMutant], fates: Fates, show: Callable[[str], None],
     found = 0
     for file in dict.fromkeys(mutant.file for mutant in mutants):
         source = next(root / name / file for name in FOLDERS if (root / name / file).exists())
+        case = f"{NAME} {hash_of([source])}"
         own = None
         for mutant in (one for one in mutants if one.file == file):
             fate = fates.get(mutant.name)
-            if not fate.waits(NAME):
+            if fate.equal != case:
+                fate.equal = ""
+            if not fate.waits(case):
                 continue
             own = own or object_code(source, 0)
-            fate.tried = [*(fate.tried or []), NAME]
+            fate.tried = [*(one for one in fate.tried or [] if not one.startswith(NAME)), case]
             if object_code(source, mutant.number) == own:
-                fate.equal = "the object code is the same"
+                fate.equal = case
                 found += 1
         fates.save()
     show(f"C: {found} have the object code of their source")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Runs tests on C sources with mutants, below the folder that is given; modules that follow are imported
-before. Reads JSON objects, one in a line:
+before, and what their function `ahead` makes is made. Reads JSON objects, one in a line:
 
-    {"mutant": N, "tests": [...], "seconds": S}    gives {"mutant": N, "test": what failed, or ""}
+    {"mutant": N, "tests": [...], "seconds": S}    gives {"mutant": N, "test": what failed or "", "says": how}
     {"record": FILE, "tests": [...], "longest": S} gives {"seconds": {test: S}, "reached": {test: [N, ...]},
                                                           "failed": [...], "slow": [...]}
 
@@ -16,6 +16,7 @@ import os
 import resource
 import signal
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -42,7 +43,8 @@ def _seconds() -> float:
 class Recorder:
     """A plugin of pytest: how long each test takes, which mutants it reaches, what fails."""
 
-    def __init__(self, reached: Path | None = None, longest: float = 0.0):
+    def __init__(self, begins: Callable[[str], None], reached: Path | None = None, longest: float = 0.0):
+        self.begins = begins
         self.file = reached
         self.seconds: dict[str, float] = {}
         self.reached: dict[str, list[int]] = {}
@@ -53,6 +55,7 @@ class Recorder:
 
     def pytest_runtest_logstart(self, nodeid: str) -> None:
         """A test begins."""
+        self.begins(nodeid)
         self.began = _seconds()
 
         def end(*_: Any) -> None:
@@ -104,12 +107,12 @@ def _run(recorder: Recorder, tests: list[str]) -> int:
         return int(pytest.main([*options, *tests], plugins=[recorder]))
 
 
-def _answer(asked: dict[str, Any]) -> dict[str, Any]:
-    """In the process of one run."""
+def _answer(asked: dict[str, Any], begins: Callable[[str], None]) -> dict[str, Any]:
+    """In the process of one run, which tells the tests that begin."""
     os.environ["PASSO_MUTANT"] = str(asked.get("mutant", 0))
     if "record" in asked:
         os.environ["PASSO_REACHED"] = asked["record"]
-        recorder = Recorder(Path(asked["record"]), asked["longest"])
+        recorder = Recorder(begins, Path(asked["record"]), asked["longest"])
         _run(recorder, asked["tests"])
         return {
             "seconds": recorder.seconds,
@@ -117,10 +120,12 @@ def _answer(asked: dict[str, Any]) -> dict[str, Any]:
             "failed": recorder.failed,
             "slow": recorder.slow,
         }
-    recorder = Recorder()
+    recorder = Recorder(begins)
     status = _run(recorder, asked["tests"])
-    test = recorder.failed[0] if recorder.failed else "" if status == 0 else f"pytest ends with {status}"
-    return {"mutant": asked["mutant"], "test": test}
+    if status == 0:
+        return {"mutant": asked["mutant"], "test": "", "says": ""}
+    test = recorder.failed[0] if recorder.failed else asked["tests"][0]
+    return {"mutant": asked["mutant"], "test": test, "says": f"pytest ends with {status}"}
 
 
 def _forked(asked: dict[str, Any]) -> dict[str, Any]:
@@ -135,26 +140,29 @@ def _forked(asked: dict[str, Any]) -> dict[str, Any]:
             resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
             resource.setrlimit(resource.RLIMIT_AS, (6 << 30, 6 << 30))
             signal.alarm(20 * limit)
-        with os.fdopen(write, "w") as pipe:
-            pipe.write(json.dumps(_answer(asked)))
+        with os.fdopen(write, "w", buffering=1) as pipe:
+            answer = _answer(asked, lambda test: print(test, file=pipe))
+            print(json.dumps(answer), file=pipe)
         os._exit(0)
     os.close(write)
+    last = ""
     with os.fdopen(read) as pipe:
-        said = pipe.read()
+        for line in pipe:
+            last = line.rstrip("\n")
     _, status = os.waitpid(process, 0)
     with contextlib.suppress(ProcessLookupError):
         os.killpg(process, signal.SIGKILL)
-    if said:
-        return dict(json.loads(said))
+    if last.startswith("{"):
+        return dict(json.loads(last))
     ended = signal.Signals(os.WTERMSIG(status)).name if os.WIFSIGNALED(status) else f"status {status}"
-    return {"mutant": asked.get("mutant"), "test": f"ends with {ended}"}
+    return {"mutant": asked.get("mutant"), "test": last or asked["tests"][0], "says": f"ends with {ended}"}
 
 
 def main() -> None:
     """Answer each line."""
     _switch(Path(sys.argv[1]))
     for module in (*AHEAD, *sys.argv[2:]):
-        importlib.import_module(module)
+        getattr(importlib.import_module(module), "ahead", lambda: None)()
     for line in sys.stdin:
         print(json.dumps(_forked(json.loads(line))), flush=True)
 

@@ -45,6 +45,10 @@ class Core:
     top: str = TOP
     played: bool = True  # by the soak: the top has SPI
 
+    def mutates(self, module: str) -> bool:
+        """Whether mutants are made of a module, if the core has it."""
+        return (not self.modules or module in self.modules) and module not in self.without
+
     @property
     def folder(self) -> Path:
         """Where its netlist is made."""
@@ -80,8 +84,8 @@ PLAIN = Core(
         ),
         *("passo_channel", "passo_channel_registers", "passo_admission", "passo_motion", "passo_timescale"),
         *("passo_profile", "passo_path", "passo_interpolate", "passo_ramp", "passo_ramp_numbers"),
-        *("passo_ramp_queue", "passo_ramp_schedule", "passo_ramp_strobes", "passo_ramp_tick", "passo_tables"),
-        *("passo_lines", "passo_line", "passo_line_queue", "passo_dda", "passo_memory"),
+        *("passo_ramp_queue", "passo_ramp_schedule", "passo_ramp_strobes", "passo_ramp_tick"),
+        *("passo_line", "passo_line_queue", "passo_dda", "passo_memory"),
         *("passo_axes", "passo_axis", "passo_axis_registers", "passo_axis_settings", "passo_positions"),
     ),
 )
@@ -90,14 +94,16 @@ BOTH = ("passo_core", "passo_channel", "passo_channel_registers", "passo_axis_re
 MACHINED = Core(
     "machine",
     MACHINE,
-    without=tuple(module for module in PLAIN.modules if module not in BOTH),
+    without=(*(module for module in PLAIN.modules if module not in BOTH), "passo_tables"),
 )
+# All channels that the tables can serve.
+CHANNELS = Core("channels", Parameters(8, 1, 7, 2, 2), ("passo_tables",))
 # Buses are judged by their promises alone.
 WISHBONE = Core(
     "wishbone", Parameters(), ("passo_wishbone", "passo_words"), top="passo_wishbone", played=False
 )
 AXI_LITE = Core("axi_lite", Parameters(), ("passo_axi_lite",), top="passo_axi_lite", played=False)
-CORES = (PLAIN, MACHINED, WISHBONE, AXI_LITE)
+CORES = (PLAIN, MACHINED, CHANNELS, WISHBONE, AXI_LITE)
 
 
 @dataclass(frozen=True)
@@ -215,7 +221,7 @@ def draw(core: Core, seed: int, each: int) -> list[Mutant]:
     files: dict[str, list[str]] = {}
     for name in sorted(all_modules):
         file = file_of(name)
-        if not ((core.modules and file not in core.modules) or file in core.without):
+        if core.mutates(file):
             files.setdefault(file, []).append(name)
     drawn_from = [name for names in files.values() for name in names]
     lists = {name: f"list{i}.txt" for i, name in enumerate(drawn_from)}

@@ -11,6 +11,7 @@ from passo.console import console, table
 from passo.output import write_text
 from passo.toolchain import paths
 
+from verify.mutants.c_equal import NAME as OBJECT_CODE
 from verify.mutants.c_source import CMutant
 from verify.mutants.fates import Fates
 from verify.mutants.netlist import Mutant
@@ -30,7 +31,7 @@ class Score:
     killed: dict[str, int] = field(default_factory=dict)  # by judge
     equal: int = 0
     waiting: int = 0  # not played yet
-    living: list[tuple[str, str]] = field(default_factory=list)  # the mutant, and the reason
+    living: list[tuple[str, str]] = field(default_factory=list)  # the mutant, and the reason, where known
 
     @property
     def dead(self) -> int:
@@ -51,6 +52,11 @@ class Score:
     def faults(self) -> int:
         """Those that have been played, and are not equal."""
         return self.made - self.equal - self.waiting
+
+    @property
+    def live(self) -> int:
+        """Of the faults."""
+        return self.faults - self.dead
 
 
 def _judge_of(killed: str) -> str:
@@ -87,7 +93,7 @@ def scores(mutants: Sequence[Mutant | CMutant], fates: Fates) -> list[Score]:
             score.killed[judge] = score.killed.get(judge, 0) + 1
         elif fate.equal or why[1]:
             score.equal += 1
-        elif not fate.tried:
+        elif all(case.startswith(OBJECT_CODE) for case in fate.tried or []):
             score.waiting += 1
         else:
             score.living.append((_shown(mutant), why[0] or NO_REASON))
@@ -126,30 +132,47 @@ def show_table(rtl: Sequence[Score], c: Sequence[Score]) -> None:
             continue
         made = table(title, "module", "mutants", "killed", "no faults", "live", "score")
         for score in [*all_scores, total(all_scores)]:
-            live = score.faults - score.dead
-            made.add_row(
-                *(score.module, str(score.made), str(score.dead), str(score.equal)),
-                *(str(live), score.shown),
-            )
+            counts = (score.made, score.dead, score.equal, score.live)
+            made.add_row(score.module, *map(str, counts), score.shown)
         console.print(made)
 
 
-def _rtl_table(all_scores: Sequence[Score]) -> str:
-    lines = [f"| module | mutants | {' | '.join(JUDGES)} | no fault | not played | live | score |"]
-    lines.append("|---|" + "---:|" * (len(JUDGES) + 5))
+ENDS = ("no fault", "not played", "live", "score")
+
+
+def _table(head: str, judges: Sequence[str], all_scores: Sequence[Score]) -> str:
+    """The scores by judge; of one judge, whatever its name."""
+    lines = [f"| {' | '.join((head, 'mutants', *judges, *ENDS))} |"]
+    lines.append("|---|" + "---:|" * (1 + len(judges) + len(ENDS)))
     for score in all_scores:
-        by = " | ".join(str(score.killed.get(judge, 0)) for judge in JUDGES)
-        ends = f"{score.equal} | {score.waiting} | {len(score.living)} | {score.shown}"
-        lines.append(f"| `{score.module}` | {score.made} | {by} | {ends} |")
+        by = [score.killed.get(judge, 0) for judge in judges] if len(judges) > 1 else [score.dead]
+        numbers = (score.made, *by, score.equal, score.waiting, score.live)
+        lines.append(f"| `{score.module}` | {' | '.join(map(str, numbers))} | {score.shown} |")
     return "\n".join(lines)
 
 
-def _c_table(all_scores: Sequence[Score]) -> str:
-    lines = ["| file | mutants | killed | no fault | not played | live | score |", "|---|" + "---:|" * 6]
-    for score in all_scores:
-        counts = f"{score.made} | {score.dead} | {score.equal} | {score.waiting} | {len(score.living)}"
-        lines.append(f"| `{score.module}` | {counts} | {score.shown} |")
-    return "\n".join(lines)
+def _read(text: str, judges: Sequence[str]) -> dict[str, Score]:
+    """The rows of such a table and the survivors with their reasons, from a part of the page."""
+    found: dict[str, Score] = {}
+    for name, numbers in re.findall(r"^\| `(\w+(?:\.c)?)` \| (.*) \|", text, re.M):
+        made, *by, equal, waiting, _ = (int(number) for number in numbers.split(" | ")[:-1])
+        found[name] = Score(name, made, dict(zip(judges, by, strict=True)), equal, waiting)
+    reason = ""
+    for line in text.splitlines():
+        if heading := re.fullmatch(r"(.*) \(\d+\):", line):
+            reason = heading[1][0].lower() + heading[1][1:]
+        elif (item := re.match(r"\* (\w+(?:\.c)?)\b", line)) and item[1] in found:
+            found[item[1]].living.append((line[2:].replace("&lt;", "<").replace("\\|", "|"), reason))
+    return found
+
+
+def _kept(new: Sequence[Score], old: dict[str, Score]) -> list[Score]:
+    """The rows with those of the page where more mutants have been played."""
+    kept = [
+        old[score.module] if score.module in old and old[score.module].waiting < score.waiting else score
+        for score in new
+    ]
+    return kept or list(old.values())
 
 
 def _living(all_scores: Sequence[Score]) -> str:
@@ -165,47 +188,46 @@ def _living(all_scores: Sequence[Score]) -> str:
     return "\n".join(parts)
 
 
-NOT_ENDED = """
-This run has not finished: not every checker has tried every mutant, so a mutant that is alive here may still
-be killed."""
+BEGIN, END = "<!-- figures: written by make verify -->\n", "<!-- end of figures -->\n"
 
 
-def write(rtl: Sequence[Score], c: Sequence[Score], seed: int, ended: bool = True) -> None:
-    """Put the figures between the marks of the page; survivors are listed when all judges have played."""
-    rtl, c = _merged(rtl), _merged(c)
-    all_rtl, all_c = total(rtl), total(c)
-    text = PAGE.read_text(encoding="utf-8")
-    begin, end = "<!-- figures: written by make verify -->\n", "<!-- end of figures -->\n"
-    head, rest = text.split(begin)
-    tail = rest.split(end)[1]
+def write(rtl: Sequence[Score], c: Sequence[Score], seed: int) -> None:
+    """Put the figures between the marks of the page; rows of what has not been played stay."""
+    head, rest = PAGE.read_text(encoding="utf-8").split(BEGIN)
+    old, tail = rest.split(END)
+    rows, _, survivors = old.partition("## Survivors")
+    of_rtl, _, of_c = rows.partition("### C\n")
+    living_rtl, _, living_c = survivors.partition("### Of C\n")
+    rtl = _kept(_merged(rtl), _read(of_rtl + living_rtl, JUDGES))
+    c = _kept(_merged(c), _read(of_c + living_c, ("tests",)))
+    write_text(PAGE, head + BEGIN + _figures(rtl, c, seed) + END + tail)
 
+
+def _figures(rtl: Sequence[Score], c: Sequence[Score], seed: int) -> str:
     def of(score: Score) -> str:
         waits = f", {score.waiting} not played yet" if score.waiting else ""
         equal = f"{score.equal} more are equivalent"
         return f"{score.dead:,} of {score.faults:,} ({score.share:.1%}; {equal}{waits})"
 
-    survivors = f"""
-## Survivors
+    unlisted = sum(score.live - len(score.living) for score in (*rtl, *c))
+    note = f"\n{unlisted} older survivors are not listed.\n" if unlisted else ""
+    return f"""
+Seed {seed}. Mutants killed in the RTL: {of(total(rtl))}; in the C sources:
+{of(total(c))}.
 
+### RTL
+
+{_table("module", JUDGES, rtl)}
+
+### C
+
+{_table("file", ("killed",), c)}
+
+## Survivors
+{note}
 ### Of the RTL
 {_living(rtl)}
 
 ### Of C
 {_living(c)}
 """
-
-    figures = f"""
-Seed {seed}. Mutants killed in the RTL: {of(all_rtl)}; in the C sources:
-{of(all_c)}.
-
-### RTL
-
-{_rtl_table(rtl)}
-
-### C
-
-{_c_table(c)}
-
-"""
-    figures += survivors if ended else NOT_ENDED + "\n"
-    write_text(PAGE, head + begin + figures + end + tail)

@@ -38,6 +38,7 @@ ROUNDS = {
         (Round("machine", 4, 20), Round("tries", 0, 3), Round("pokes", 1, 3)),
     ),
 }
+NONE: tuple[tuple[Round, ...], ...] = ((), (), ())  # of a core that the soak does not have
 CHUNK = 30  # mutants of one process
 
 

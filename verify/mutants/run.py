@@ -5,7 +5,8 @@
 
 `--only` takes `rtl`, `c`, modules of rtl/ and files of the driver, the planner and G-code. A run continues
 where the last one ended: the fates are kept in build/mutants, and all that was killed is killed once more
-when the sources or the judges are others. A run of everything writes docs/reference/mutants.md.
+when the sources or the judges are others. A run of everything writes docs/reference/mutants.md; `--page`
+writes what is known, and keeps the rows of what has not been played.
 """
 
 import argparse
@@ -48,6 +49,8 @@ def _say(text: str) -> None:
 
 def run_core(core: Core, seed: int, each: int, only: Collection[str]) -> list[Score]:
     """All judges of the RTL: the quick ones first."""
+    if only and not any(core.mutates(module) for module in only):
+        return []
     mutants, hashed = drawn(core, seed, max(each, MOST))
     soak = program()
     fates = Fates(f"rtl_{core.name}", hash_of([soak], hashed, str(seed)))
@@ -57,7 +60,7 @@ def run_core(core: Core, seed: int, each: int, only: Collection[str]) -> list[Sc
         return scores(chosen, fates)
     verilated = library(core)
     pins = rtl_judge.Pins(core, chosen, fates, soak, verilated, seed, _say)
-    first, second, third = rtl_judge.ROUNDS[core.name]
+    first, second, third = rtl_judge.ROUNDS.get(core.name, rtl_judge.NONE)
     pins.judge(first)
     for check in (
         *(frames_judge.CHECK, motions_judge.CHECK, timings_judge.CHECK, lines_judge.CHECK),
@@ -77,7 +80,7 @@ def run_c(seed: int, count: int, only: Collection[str]) -> list[Score]:
     """The tests as judges of the C sources."""
     mutants, hashed = c_source.drawn(seed, count)
     chosen = [mutant for mutant in mutants if not only or mutant.file in only]
-    fates = Fates("c", hash_of(c_judge.tests(), hashed))
+    fates = Fates("c", hashed, again=False)
     c_equal.judge(chosen, fates, _say)
     c_judge.judge(chosen, fates, _say)
     return scores(chosen, fates)
@@ -119,7 +122,7 @@ def main() -> None:
     show_table(rtl, c)
     _say(f"{time.monotonic() - began:.0f} s")
     if not only:
-        write(rtl, c, arguments.seed, ended=not arguments.page)
+        write(rtl, c, arguments.seed)
     for case in rtl_judge.unfair:
         _say(f"the judge finds fault with the core itself: {case}")
     sys.exit(bool(rtl_judge.unfair))
