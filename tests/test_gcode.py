@@ -134,11 +134,11 @@ ERRORS = {
          "G38.25 X1 F1", "G5.1",
          ],
     21: ["G17 G18", "G20 G21", "G90 G91", "G93 G94", "G54 G55", "M3 M4", "M7 M8", "M0 M2",
-         "G4 P1 G53 G0 X1", "G80 G0 X1", "G0 G80 X1", "G4 G28", "G92.1 G28", "G28.1 G92 X1", "G61 G64"],
+         "G4 P1 G53 G0 X1", "G43.1 G49 Z1", "G4 G28", "G92.1 G28", "G28.1 G92 X1", "G61 G64"],
     22: ["G81 X1", "G1 X1", "G1", "G2 X1 I1", "G38.2 X1", "G93 G1 X1", "G1 X1 F0"],
     23: ["G1.5 X1", "G17.1", "G54.1", "M3.5", "G0.1 X1", "G4.1 P1", "M30.2", "M6.1", "G99.5", "M99.5",
          "G59.1", "G59.3", "G49.1", "G10.1 L2 P1 X1", "G80.1", "G53.1 G0 X1"],
-    24: ["G0 G1 X1", "G1 G38.2 X1 F1", "G10 G92 X1", "G28 G30", "G43.1 G49 Z1", "G2 G49", "G49 G92 X1",
+    24: ["G0 G1 X1", "G1 G38.2 X1 F1", "G10 G92 X1", "G28 G30", "G49 G92 X1",
          "G1 G1", "G0 X1 G92 Y1", "G28 G1 X1 F1", "G10 L2 P1 X1 G0 Y5", "G43.1 Z1 G0 X1", "G92 X0 G43.1 Z1"],
     25: ["G0 X1 X2", "F1 F2", "G1 X1 I0 I0 F1", "N1 N2", "S1 S1"],
     26: ["G10 L2 P1", "G92", "F10 G38.2", "F10 G3 R5"],
@@ -168,6 +168,22 @@ def test_a_wrong_line_has_its_error_and_changes_nothing(number: int, line: str) 
         run(gcode, line)
     assert caught.value.number == number
     assert state(gcode) == before and not list(gcode.actions())
+
+
+@pytest.mark.parametrize("line", ["G1 X2 F100", "G0 G17 G40 G49 G90", "G81 X1 Z-1 R2 F50", "G2 X10 I5 F100"])
+def test_g80_with_another_motion_only_ends_the_one_in_force(line: str) -> None:
+    """As in LinuxCNC, wherever it is in the line."""
+    expected, places = Gcode(), line.split()
+    before = "G81 Z-1 R1 F10 X0"
+
+    def made(gcode: Gcode, text: str) -> list[tuple[int, list[int], int]]:
+        return [(action.kind, list(action.target), action.feed) for action in run(gcode, before, text)]
+
+    actions = made(expected, line)
+    for at in range(len(places) + 1):
+        gcode = Gcode()
+        assert made(gcode, " ".join([*places[:at], "G80", *places[at:]])) == actions
+        assert state(gcode) == state(expected)
 
 
 @pytest.mark.parametrize("line", ["G92 X1", "G28 X1", "G10 L2 P1 X1", "G43.1 Z1", "X1", "G53"])

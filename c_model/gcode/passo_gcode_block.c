@@ -41,7 +41,7 @@ static const struct code G_CODES[] = {
     {385, PASSO_GCODE_MOTION, AXIS_WORDS | TENTHS},
     {400, PASSO_GCODE_CUTTER, 0},
     {431, PASSO_GCODE_TOOL_LENGTH, AXIS_WORDS | TENTHS},
-    {490, PASSO_GCODE_TOOL_LENGTH, AXIS_WORDS},
+    {490, PASSO_GCODE_TOOL_LENGTH, 0},
     {530, PASSO_GCODE_COMMAND, 0},
     {540, PASSO_GCODE_SYSTEM, 0},
     {550, PASSO_GCODE_SYSTEM, 0},
@@ -146,16 +146,21 @@ bool passo_gcode_number(const char **text, int64_t *millionths)
 	return true;
 }
 
+/* G80 with another motion in the line only ends the one in force. */
 static enum passo_gcode_error add_code(struct passo_gcode_block *block, const struct code *code)
 {
+	passo_gcode_command *given = &block->command[code->group];
+
 	if (code->properties & AXIS_WORDS) {
 		if (block->takes_axes)
 			return PASSO_GCODE_TWO_COMMANDS;
 		block->takes_axes = true;
 	}
-	if (block->command[code->group] != PASSO_GCODE_NONE)
+	if (*given != PASSO_GCODE_NONE && code->number == PASSO_GCODE_G(80, 0))
+		return PASSO_GCODE_OK;
+	if (*given != PASSO_GCODE_NONE && *given != PASSO_GCODE_G(80, 0))
 		return PASSO_GCODE_MODAL_GROUP;
-	block->command[code->group] = code->number;
+	*given = code->number;
 	return PASSO_GCODE_OK;
 }
 
@@ -195,6 +200,18 @@ static enum passo_gcode_error add_value(
 	return PASSO_GCODE_OK;
 }
 
+/* The axis words are those of G49, as in grbl; without any, other commands may be in its line. */
+static enum passo_gcode_error mind_g49(struct passo_gcode_block *block, unsigned axes)
+{
+	if (block->command[PASSO_GCODE_TOOL_LENGTH] != PASSO_GCODE_G(49, 0)
+	    || !(block->words & passo_gcode_axis_words(axes)))
+		return PASSO_GCODE_OK;
+	if (block->takes_axes)
+		return PASSO_GCODE_TWO_COMMANDS;
+	block->takes_axes = true;
+	return PASSO_GCODE_OK;
+}
+
 enum passo_gcode_error passo_gcode_parse(const char *text, unsigned axes, struct passo_gcode_block *block)
 {
 	const uint32_t known = VALUE_WORDS | passo_gcode_axis_words(axes);
@@ -222,5 +239,5 @@ enum passo_gcode_error passo_gcode_parse(const char *text, unsigned axes, struct
 		else
 			error = add_value(block, known, letter, value);
 	}
-	return error;
+	return error == PASSO_GCODE_OK ? mind_g49(block, axes) : error;
 }
