@@ -125,9 +125,9 @@ netlist: ## Run all core tests on the synthesized iCE40 netlist.
 coverage: setup ## Measure line and toggle coverage of the RTL; a gap is an error; writes docs/reference/coverage.md.
 	@$(BIN)/python -m cocotb_tests.coverage
 
-firmware: ## Build the STM32F103C8 firmware and print flash, RAM and stack use; GRBL=1: the grbl image, MACHINE="..." its options (docs/firmware.md).
+firmware: ## Build all images of the STM32F103 and print flash, RAM and stack use; CHIP=c8, CHIP=c8 GRBL=1, CHIP=cb: one of them, MACHINE="..." its options (docs/firmware.md).
 	@tools/setup.sh firmware
-	@$(MAKE) -C stm32_bridge/firmware
+	@$(if $(CHIP)$(GRBL)$(MACHINE),$(MAKE) -C stm32_bridge/firmware,$(MAKE) -C stm32_bridge/firmware table)
 
 firmware-demo: ## Run examples on the firmware's console, with the Verilated core at its pins (a minute).
 	@tools/setup.sh firmware

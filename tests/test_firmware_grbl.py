@@ -42,6 +42,7 @@ Y2
 G2 X0 Y0 R2
 M2""".splitlines()
 LONG = "G1 X40 F3000"
+RESET = "\r\n[MSG:Reset by power]\r\n[MSG:STM32F103x8: no jerk, no axes A B C, no console]\r\n"
 
 
 @pytest.fixture(scope="module")
@@ -83,7 +84,7 @@ def test_it_fits_and_the_page_says_how_large_it_is() -> None:
 
 def test_greeting_and_settings(board: GrblBoard) -> None:
     """What a sender asks for first."""
-    assert board.output == "\r\n[MSG:Reset by power]\r\n\r\nGrbl 1.1h ['$' for help]\r\n"
+    assert board.output == RESET + "\r\nGrbl 1.1h ['$' for help]\r\n"
     core = f"[CORE:{'.'.join(map(str, REGISTER_MAP))}:{HZ}:0]"
     firmware = f"[VER:1.1h.passo:]\n[OPT:VNM,48,255]\n[FIRMWARE:Passo {passo.__version__}]"
     assert board.line("$I") == f"{firmware}\n{core}\nok"
@@ -358,7 +359,7 @@ def test_without_a_core(elf: Path) -> None:
     """It is reported once; no watchdog trips, and fast blinking shows it."""
     machine = Machine(elf, None)
     machine.run(1.5)
-    assert machine.output == "\r\n[MSG:Reset by power]\r\n[MSG:STUCK_LOW]\r\n"
+    assert machine.output == RESET + "[MSG:STUCK_LOW]\r\n"
     assert machine.resets == [(0, "power")] and len(machine.led) > 15
 
 

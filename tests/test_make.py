@@ -148,6 +148,7 @@ def test_images(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch:
 MORE = "".join(
     f'[[axis]]\nname = "{name}"\nsteps_per_mm = 80\nspeed = 10\nacceleration = 100\n' for name in "AB"
 )
+ONE = MORE[: MORE.index("[[axis]]", 1)]
 WRONG = [
     ("board =", "bord =", "unknown key 'bord'; did you mean board?"),
     ('"hx8k"', '"hx8"', "board must be one of .*, not 'hx8'; did you mean hx8k?"),
@@ -184,8 +185,24 @@ WRONG = [
     (
         'drive = "DM542"',
         'drive = "DM542"\nprofile = "cosine"',
-        'profile is "cosine"; the ramps of the firmware',
+        'profile is "cosine"; the ramps of the firmware for STM32F103C8 are linear',
     ),
+    (
+        'drive = "DM542"',
+        'drive = "DM542"\nchip = "STM32F103CB"\nprofile = "sigmoid"',
+        'profile is "sigmoid"; the ramps of the firmware for STM32F103CB are linear or jerk',
+    ),
+    (
+        'drive = "DM542"',
+        'drive = "DM542"\nchip = "STM32F103C9"',
+        "chip must be one of STM32F103C8, STM32F103CB, not 'STM32F103C9'; did you mean",
+    ),
+    (TEXT, TEXT + ONE, 'there are 4 axes; the firmware for STM32F103C8 has 3, chip = "STM32F103CB" 6'),
+    ("inverted = false", "inverted = 1", "switches: inverted must be true or false|inverted must be"),
+    ('switches = ["home"]', 'switches = ["home", "home"]', "axis 1: switches has home twice"),
+    ("travel = 600", "travel = 0", "axis 1: travel must be greater than 0"),
+    ("probe = true", "probe = true\nsoft_limits = 3", "soft_limits must be true or false"),
+    ("steps_per_mm = 80", "steps_per_mm = 0", "axis 1: steps_per_mm must be greater than 0"),
     ('name = "X"', 'name = "X"\njump = 2', "axis X: jump is no setting of the firmware"),
     ("[switches]", '[pins]\nstep_high = "2mm"\n[switches]', "pins: step_high"),
     (
@@ -216,8 +233,9 @@ def test_small_boards(
 ) -> None:
     """Pins that are shared, pins that are too few."""
     path = tmp_path / "small.toml"
-    more = MORE[: MORE.index("[[axis]]", 1)] if name == "tangnano9k" else ""
-    path.write_text(TEXT.replace("hx8k", name).replace('switches = ["home"]', switches, 1) + more)
+    more = ONE if name == "tangnano9k" else ""
+    large = f'chip = "STM32F103CB"\n{TEXT}'
+    path.write_text(large.replace("hx8k", name).replace('switches = ["home"]', switches, 1) + more)
     assert main(["make", str(path), "--out", str(tmp_path / "out")]) == 2
     assert said in capsys.readouterr().err and not (tmp_path / "out").exists()
 

@@ -18,7 +18,7 @@ def make(*arguments: str) -> subprocess.CompletedProcess[str]:
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("firmware", "BOARD="), "make firmware: unknown variable BOARD; must be one of GRBL, MACHINE"),
+        (("firmware", "BOARD="), "make firmware: unknown variable BOARD; must be one of CHIP, GRBL, MACHINE"),
         (("firmware", "GRLB=1"), "make firmware: unknown variable GRLB; did you mean GRBL?"),
         (("synth", "BORD=hx8k"), "make synth: unknown variable BORD; did you mean BOARD?"),
         (("synth", "board=hx8k"), "make synth: unknown variable board; did you mean BOARD?"),
@@ -39,7 +39,10 @@ def test_unknown_variables(arguments: tuple[str, ...], said: str) -> None:
         (("GRBL=1", "MACHINE=-DHOME=7"), "MACHINE: unknown definition HOME; did you mean HOMES?"),
         (("GRBL=1", "MACHINE=-DAXES=3 -DX=1"), "MACHINE: unknown definition X; must be one of AXES, "),
         (("GRBL=1", "MACHINE=AXES=3"), "MACHINE has AXES=3, which is not of the form -DNAME=VALUE"),
-        (("MACHINE=-DAXES=3",), "MACHINE needs GRBL=1"),
+        (("MACHINE=-DAXES=3",), "MACHINE needs GRBL=1 or CHIP=cb"),
+        (("CHIP=cb", "MACHINE=-DHOME=7"), "MACHINE: unknown definition HOME; did you mean HOMES?"),
+        (("CHIP=c9",), "unknown value of CHIP: c9; must be one of c8, cb"),
+        (("CHIP=cb", "GRBL=1"), "CHIP=cb has grbl and the console: GRBL=1 is for CHIP=c8"),
     ],
 )
 def test_unknown_definitions(arguments: tuple[str, ...], said: str) -> None:
@@ -52,6 +55,7 @@ def test_unknown_definitions(arguments: tuple[str, ...], said: str) -> None:
     "arguments",
     [
         ("firmware", "GRBL=1", "MACHINE=-DAXES=3 -DPROBE=1"),
+        ("firmware", "CHIP=cb", "MACHINE=-DAXES=4"),
         ("synth", "BOARD=hx8k", "AXES=2", "CLOCK=48", "PARTS=inputs"),
         ("report", "ONLY=hx8k", "QUICK=1", "PARTS=1"),
         ("verify", "ONLY=formal axis", "SEED=1", "SCALE=2"),

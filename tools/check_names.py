@@ -2,6 +2,7 @@
 """Refuse names that a makefile would ignore: print a sentence about the first one, or nothing.
 
     tools/check_names.py variables MAKEFILE "GOALS" NAME...      the help of a goal names those that it takes
+    tools/check_names.py value NAME VALUE KNOWN...               the value of a variable is one of them
     tools/check_names.py definitions HEADER "-DNAME=VALUE ..."   the header has `#ifndef NAME` for each
 
 Variables PASSO_... are those of the environment of the tests.
@@ -46,9 +47,18 @@ def refused_definition(header: str, definitions: str) -> str:
     return ""
 
 
+def refused_value(variable: str, value: str, known: Sequence[str]) -> str:
+    """About a value that is none of the known ones."""
+    allowed = ", ".join(known)
+    return "" if value in known else f"unknown value of {variable}: {value}; must be one of {allowed}"
+
+
 def main(arguments: Sequence[str]) -> None:
-    kind, path, first, *given = arguments
-    text = Path(path).read_text(encoding="utf-8")
+    kind, place, first, *given = arguments
+    if kind == "value":
+        print(refused_value(place, first, given))
+        return
+    text = Path(place).read_text(encoding="utf-8")
     if kind == "variables":
         print(refused_variable(text, first.split(), given))
     else:

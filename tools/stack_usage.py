@@ -13,9 +13,13 @@ import argparse
 import re
 import subprocess
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+FLASH_SECTIONS, RAM_SECTIONS = {".vectors", ".text", ".data"}, {".data", ".bss", ".noinit"}
+ALTERNATIVE = ".only_"  # sections that are in the same place
+ROW = "{:30}  {:>18}  {:>18}  {:>16}"
 EXCEPTION_BYTES = 36  # 8 words, and one for alignment
 INSTRUCTION = re.compile(r"^ *([0-9a-f]+):\t([^\t]+)\t?(.*)$")
 FUNCTION = re.compile(r"^([0-9a-f]+) <(.+)>:$")
@@ -97,10 +101,10 @@ def name_callers(functions: dict[int, Function], elf: Path, cross: str) -> None:
         sites[int(site, 16)][:0] = [CLONE.sub("", name) for name in inlined[::2]]
 
 
-def read_calls(path: Path) -> dict[str, list[str]]:
+def read_calls(paths: Sequence[Path]) -> dict[str, list[str]]:
     """Read the targets of indirect calls: names, by the caller's name."""
-    calls = {}
-    for line in path.read_text().splitlines():
+    calls: dict[str, list[str]] = {}
+    for line in "\n".join(path.read_text() for path in paths).splitlines():
         line = line.partition("#")[0].strip()
         if line:
             caller, _, targets = line.partition(":")
@@ -149,13 +153,15 @@ def deepest(functions: dict[int, Function], start: int) -> tuple[int, list[str]]
 
 def sizes(elf: Path, cross: str) -> tuple[int, int]:
     """Bytes of flash and of RAM; the stack excluded."""
-    flash = ram = 0
+    flash = ram = largest = 0
     for line in _run(f"{cross}size", "-A", str(elf)).splitlines():
         fields = line.split()
-        if len(fields) == 3 and fields[0] in (".text", ".data", ".bss", ".noinit"):
-            flash += int(fields[1]) * (fields[0] in (".text", ".data"))
-            ram += int(fields[1]) * (fields[0] != ".text")
-    return flash, ram
+        if len(fields) == 3 and fields[0] in FLASH_SECTIONS | RAM_SECTIONS:
+            flash += int(fields[1]) * (fields[0] in FLASH_SECTIONS)
+            ram += int(fields[1]) * (fields[0] in RAM_SECTIONS)
+        elif len(fields) == 3 and fields[0].startswith(ALTERNATIVE):
+            largest = max(largest, int(fields[1]))
+    return flash, ram + largest
 
 
 def _run(*command: str) -> str:
@@ -164,14 +170,18 @@ def _run(*command: str) -> str:
 
 def main() -> int:
     """Print the figures; return 1 if something does not fit or cannot be determined."""
+    if sys.argv[1:] == ["--head"]:
+        print(ROW.format("image", "flash, bytes", "RAM without stack", "stack at worst"))
+        return 0
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("elf", type=Path)
     parser.add_argument("--cross", default="arm-none-eabi-")
-    parser.add_argument("--calls", type=Path, required=True, help="targets of indirect calls")
+    parser.add_argument("--calls", type=Path, action="append", required=True, help="indirect calls")
     parser.add_argument("--flash", type=int, required=True, help="bytes available")
     parser.add_argument("--ram", type=int, required=True, help="bytes available")
     parser.add_argument("--start", default="reset_handler")
     parser.add_argument("--interrupt", action="append", default=[], help="a handler that can nest on top")
+    parser.add_argument("--row", help="print a row of a table instead, which begins with this")
     options = parser.parse_args()
     try:
         functions = disassemble(options.elf, options.cross)
@@ -185,10 +195,14 @@ def main() -> int:
         return 1
     flash, ram = sizes(options.elf, options.cross)
     left = options.ram - ram
-    print(f"deepest path: {' > '.join(path)}")
-    print(f"flash {flash} of {options.flash} bytes, {options.flash - flash} left")
-    print(f"RAM   {ram} of {options.ram} bytes, {left} left for the stack")
-    print(f"stack {stack} of {left} bytes at worst, {left - stack} left")
+    if options.row:
+        figures = (flash, options.flash), (ram, options.ram), (stack, left)
+        print(ROW.format(options.row, *(f"{size:,} of {most:,}" for size, most in figures)))
+    else:
+        print(f"deepest path: {' > '.join(path)}")
+        print(f"flash {flash} of {options.flash} bytes, {options.flash - flash} left")
+        print(f"RAM   {ram} of {options.ram} bytes, {left} left for the stack")
+        print(f"stack {stack} of {left} bytes at worst, {left - stack} left")
     if flash > options.flash or stack > left:
         print("stack_usage: does not fit", file=sys.stderr)
         return 1

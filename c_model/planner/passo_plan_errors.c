@@ -1,11 +1,15 @@
 /* SPDX-License-Identifier: MIT
  * Names and descriptions of the planner's errors.
  */
+#include <stddef.h>
+#include <string.h>
+
 #include "passo_plan.h"
 
 _Static_assert(PASSO_AXES_MAX == 8u, "BAD_AXES states the limit");
 
-/* X(name, text). Two tables: a program that says only names does not have the texts. */
+/* X(name, text) in the order of the codes. Strings one behind the other, which takes less flash than a
+ * pointer to each; names and texts apart: a program that says only names does not have the texts. */
 #define ERRORS(X)                                                                                            \
 	X(OK, "The plan is valid.")                                                                          \
 	X(BAD_CLOCK, "The clock must be above 0 Hz and a tick 2^" PASSO_TICK_LOG2_MIN_WORDS                  \
@@ -46,23 +50,36 @@ _Static_assert(PASSO_AXES_MAX == 8u, "BAD_AXES states the limit");
 #define ERRORS_OF_GOTO(X) X(TOO_NEAR, "The axis cannot come to rest before the target.")
 #endif
 
-#define NAME(name, text) [PASSO_PLAN_##name] = #name,
-#define TEXT(name, text) [PASSO_PLAN_##name] = text,
+#define NAME(name, text) #name "\0"
+#define TEXT(name, text) text "\0"
 
-static const char *const NAMES[] = {ERRORS(NAME) ERRORS_OF_GOTO(NAME)};
-static const char *const TEXTS[] = {ERRORS(TEXT) ERRORS_OF_GOTO(TEXT)};
+static const char NAMES[] = ERRORS(NAME) ERRORS_OF_GOTO(NAME);
+static const char TEXTS[] = ERRORS(TEXT) ERRORS_OF_GOTO(TEXT);
 
-static bool is_known(enum passo_plan_error error)
+#define PLACE(name, text) char name;
+struct errors {
+	ERRORS(PLACE) ERRORS_OF_GOTO(PLACE)
+};
+#define IN_ORDER(name, text) _Static_assert(offsetof(struct errors, name) == PASSO_PLAN_##name, #name);
+ERRORS(IN_ORDER)
+ERRORS_OF_GOTO(IN_ORDER)
+
+/* The string of an error, or `unknown`. */
+static const char *find(enum passo_plan_error error, const char *strings, const char *unknown)
 {
-	return (unsigned)error < sizeof NAMES / sizeof *NAMES;
+	if ((unsigned)error >= sizeof(struct errors))
+		return unknown;
+	for (unsigned before = (unsigned)error; before > 0; before--)
+		strings += strlen(strings) + 1;
+	return strings;
 }
 
 const char *passo_plan_error_name(enum passo_plan_error error)
 {
-	return is_known(error) ? NAMES[error] : "UNKNOWN";
+	return find(error, NAMES, "UNKNOWN");
 }
 
 const char *passo_plan_error_text(enum passo_plan_error error)
 {
-	return is_known(error) ? TEXTS[error] : "This is not a planner error.";
+	return find(error, TEXTS, "This is not a planner error.");
 }

@@ -149,7 +149,7 @@ static bool hook(struct cpu *cpu, int type, void *callback)
 bool passo_cpu_open(struct cpu *cpu)
 {
 	const struct passo_cpu_config *config = &cpu->config;
-	const uint32_t code = UC_PROT_READ | UC_PROT_EXEC;
+	const uint32_t code = UC_PROT_READ | UC_PROT_EXEC, kilobytes = config->flash_size >> 10;
 	union {
 		void (*on_instruction)(uc_engine *, uint64_t, uint32_t, void *);
 		void (*on_interrupt)(uc_engine *, uint32_t, void *);
@@ -163,6 +163,8 @@ bool passo_cpu_open(struct cpu *cpu)
 	    || uc_mem_map_ptr(cpu->uc, 0, config->flash_size, code, cpu->flash) != UC_ERR_OK
 	    || uc_mem_map_ptr(cpu->uc, PASSO_CPU_FLASH, config->flash_size, code, cpu->flash) != UC_ERR_OK
 	    || uc_mem_map_ptr(cpu->uc, PASSO_CPU_RAM, config->ram_size, UC_PROT_ALL, cpu->ram) != UC_ERR_OK
+	    || uc_mem_map(cpu->uc, PASSO_CPU_SYSTEM, 0x1000, UC_PROT_READ) != UC_ERR_OK
+	    || uc_mem_write(cpu->uc, PASSO_CPU_FLASH_KILOBYTES, &kilobytes, 2) != UC_ERR_OK
 	    || uc_mmio_map(cpu->uc, 0x40000000, 0x10000000, on_read, cpu, on_write, cpu) != UC_ERR_OK
 	    || uc_mmio_map(cpu->uc, 0xE0000000, 0x00100000, on_system_read, cpu, on_system_write, cpu)
 	           != UC_ERR_OK)

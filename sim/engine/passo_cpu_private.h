@@ -10,6 +10,8 @@
 
 #define PASSO_CPU_FLASH 0x08000000u
 #define PASSO_CPU_RAM 0x20000000u
+#define PASSO_CPU_SYSTEM 0x1FFFF000u /* a page of the chip's own memory */
+#define PASSO_CPU_FLASH_KILOBYTES 0x1FFFF7E0u
 
 struct cpu {
 	struct passo_cpu public; /* first member: a pointer to it is also one to struct cpu */

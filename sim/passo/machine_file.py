@@ -32,7 +32,7 @@ from passo.values import BadValueError, Written, shown
 
 FILE_KEYS = (
     *("board", "clock_hz", "junction_deviation", "arc_tolerance", "profile", "spindle_maximum", "laser"),
-    *("soft_limits", "probe", "drive", "pins", "switches", "home", "axis"),
+    *("soft_limits", "probe", "drive", "chip", "pins", "switches", "home", "axis"),
 )
 AXIS_KEYS = ("name", "steps_per_mm", "speed", "acceleration", "jerk", "jump", "travel", "home", "switches")
 ENABLE_INVERTED = "enable_inverted"
@@ -40,6 +40,7 @@ SWITCH_KEYS = ("inverted", "debounce", "stop")
 HOME_KEYS = ("seek", "speed", "pull_off")
 HOME_ENDS = ("low", "high")
 SWITCHES = ("home", "limit_low", "limit_high")
+CHIPS = ("STM32F103C8", "STM32F103CB")
 PROFILES = ("linear", "cosine", "sigmoid", "jerk")
 TRAVEL = 200  # mm
 WAITING_STEPS = 2
@@ -90,6 +91,7 @@ class MachineFile:
     enable_inverted: bool = False
     board: str = ""  # a folder of syn/, or none
     drive: str = ""  # a name of drives.toml, or none
+    chip: str = CHIPS[0]  # of the firmware
 
     @property
     def has_inputs(self) -> bool:
@@ -166,6 +168,7 @@ def _machine(path: Path, data: Table) -> MachineFile:
         enable_inverted,
         board,
         data.get("drive", ""),
+        read_word(data, "chip", CHIPS) if "chip" in data else CHIPS[0],
     )
 
 
@@ -279,6 +282,8 @@ def _ends(table: Table) -> AxisEnds:
         raise BadValueError(f'home must be "low" or "high", not {shown(home)}')
     if not isinstance(switches, list) or not all(switch in SWITCHES for switch in switches):
         raise BadValueError(f"switches must be an array of {', '.join(SWITCHES)}")
+    if twice := next((switch for switch in switches if switches.count(switch) > 1), None):
+        raise BadValueError(f"switches has {twice} twice")
     travel = _number(table, "travel", TRAVEL)
     if not travel:
         raise BadValueError("travel must be greater than 0")

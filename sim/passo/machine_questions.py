@@ -10,6 +10,7 @@ from passo_fpga.table import BoardError
 from passo.drives import drives
 from passo.failure import BadInputError
 from passo.gcode import AXIS_LETTERS
+from passo.make_command import CHIP_AXES, LARGE, SMALL
 from passo.output import write_text
 from passo.values import meant
 
@@ -24,7 +25,7 @@ HEAD = """\
 # Made by `passo make`. All keys: docs/gcode.md. Then: passo make {path}
 board = "{board}"
 drive = "{drive}" # its times of STEP and DIR: sim/passo/drives.toml
-{tool}{switches}"""
+{chip}{tool}{switches}"""
 SWITCHES = """
 [switches]
 inverted = false # normally closed to ground, with a pull-up: high is active
@@ -64,6 +65,7 @@ def ask_machine(path: Path, ask: Callable[[str], str] = input) -> None:
         path=path,
         board=chosen.name,
         drive=drive,
+        chip=f'chip = "{LARGE}" # {SMALL} has {CHIP_AXES[SMALL]} axes\n' if motors > CHIP_AXES[SMALL] else "",
         tool=TOOLS[tool],
         switches=SWITCHES if switches else "",
     )

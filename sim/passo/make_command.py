@@ -15,13 +15,14 @@ from passo_fpga.places import host_pins, places
 from passo_fpga.table import BoardError
 from passo_fpga.tools import ToolError
 from passo_stm32.board import make_firmware
+from passo_stm32.grbl_board import BOTH_IMAGE, SMALL_IMAGE
 
 from passo.console import stages
 from passo.drives import drives
 from passo.failure import BadInputError, Failure
 from passo.gcode import AXIS_LETTERS
 from passo.grbl_setup import MILLION, default_settings
-from passo.machine_file import MachineFile, read_machine
+from passo.machine_file import CHIPS, MachineFile, read_machine
 from passo.machine_sheet import Sheet, Wire, draw, page
 from passo.native import ffi, planner
 from passo.output import empty_folder, write_text
@@ -31,10 +32,15 @@ from passo.toolchain import need_repository, paths
 SETTINGS, WIRING, SUMMARY, COMMANDS = "settings.txt", "wiring.txt", "summary.txt", "flash.sh"
 DRAWING, PAGE = "wiring.svg", "wiring.html"
 FIRMWARE = "firmware"  # folder of its images
+SMALL, LARGE = CHIPS
+CHIP_AXES = {SMALL: 3, LARGE: 6}  # of the G-code
+CHIP_PROFILES = {SMALL: ("linear",), LARGE: ("linear", "jerk")}
+IMAGE = {SMALL: SMALL_IMAGE, LARGE: BOTH_IMAGE}
 NOT_BUILT = "  no images: --no-build"
 FAILED_BITSTREAM = "  bitstream  NONE: see above"
 SPI_MHZ = (18, 9)  # of the firmware: the fastest that a core can take, which is a quarter of its clock
 SPEED_AT = 110  # first setting of the speeds
+JERK_AT = 800  # first of those that only the large chip has
 NO_SETTING = 0xFF
 REVERSE = 1  # the output that a laser does not have
 OUTPUTS = ("spindle on", "spindle reverse", "flood coolant", "mist coolant")  # bits 0 to 3
@@ -91,12 +97,18 @@ def _check_firmware(machine: MachineFile) -> None:
     if clock_hz < 4e6 * slow:
         needed = f"the link of {slow} MHz needs {4e6 * slow:.0f}"
         raise BadInputError(f"{machine.path}: clock_hz is {clock_hz}; {needed}")
-    if machine.settings.profile != "linear":
-        profile = machine.settings.profile
-        raise BadInputError(f'{machine.path}: profile is "{profile}"; the ramps of the firmware are linear')
+    chip, profile, axes = machine.chip, machine.settings.profile, len(machine.settings.axes)
+    if profile not in CHIP_PROFILES[chip]:
+        allowed = " or ".join(CHIP_PROFILES[chip])
+        raise BadInputError(
+            f'{machine.path}: profile is "{profile}"; the ramps of the firmware for {chip} are {allowed}'
+        )
+    if axes > CHIP_AXES[chip]:
+        most = f'the firmware for {chip} has {CHIP_AXES[chip]}, chip = "{LARGE}" {CHIP_AXES[LARGE]}'
+        raise BadInputError(f"{machine.path}: there are {axes} axes; {most}")
     for letter, axis in zip(AXIS_LETTERS, machine.settings.axes, strict=False):
         for key in ("jump", "jerk"):
-            if getattr(axis, key):
+            if getattr(axis, key) and key != profile:
                 raise BadInputError(f"{machine.path}: axis {letter}: {key} is no setting of the firmware")
 
 
@@ -105,7 +117,7 @@ def _images(machine: MachineFile, chosen: Board, path: Path) -> Iterator[str]:
     tell = stages()
     tell("firmware")
     given = " ".join(f"-D{name}={value}" for name, value in definitions(machine).items())
-    said = make_firmware("GRBL=1", f"OUT={(path.parent / FIRMWARE).resolve()}", f"MACHINE={given}")
+    said = make_firmware(IMAGE[machine.chip], f"OUT={(path.parent / FIRMWARE).resolve()}", f"MACHINE={given}")
     flash = next(line.split(maxsplit=1)[1] for line in said.splitlines() if line.startswith("flash"))
     yield f"  {FIRMWARE}  {flash}"
     bitstream = path.with_suffix(f".{chosen.device.family.suffix}")
@@ -133,6 +145,8 @@ def settings_lines(machine: MachineFile) -> list[str]:
     values = {}
     while (number := c.passo_grbl_setting_number(len(values), axes, whole)) != NO_SETTING:
         values[number] = c.passo_grbl_setting(made, number, axes)[0]
+    if machine.chip == SMALL:
+        values = {number: value for number, value in values.items() if number < JERK_AT}
     speeds = range(SPEED_AT, SPEED_AT + axes)
     homing = 22  # before soft limits
     order = sorted(values, key=lambda number: (number in speeds, number != homing, number))
@@ -181,7 +195,7 @@ def _aligned(rows: list[tuple[str, ...]]) -> list[str]:
 
 def _summary(machine: MachineFile, chosen: Board) -> Iterator[str]:
     axes, pins = machine.settings.axes, machine.pins
-    yield f"{machine.path.name}: {chosen.title}"
+    yield f"{machine.path.name}: {chosen.title}, {machine.chip}"
     with_parts = ", ".join(machine.parts) or "no parts"
     spi = next(mhz for mhz in SPI_MHZ if 4e6 * mhz <= machine.clock_hz)
     clock = f"{machine.clock_hz / 1e6:g} MHz; SPI {spi} MHz"

@@ -129,6 +129,9 @@ bool passo_run_encoders(const struct passo_call *call);
 bool passo_run_adopt(const struct passo_call *call);
 bool passo_run_thread(const struct passo_call *call);
 #endif
+#ifdef PASSO_BOTH
+bool passo_run_grbl(const struct passo_call *call);
+#endif
 bool passo_run_version(const struct passo_call *call);
 bool passo_run_help(const struct passo_call *call);
 #ifndef PASSO_WITHOUT_PARTS

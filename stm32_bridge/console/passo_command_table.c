@@ -189,6 +189,9 @@ const struct passo_command passo_command_table[] = {
     {"config", passo_run_config, NULL, 0, 0, false, "show or change settings; help config lists them"},
     {"table", passo_run_table, TAKES(TABLE_KEYS), 2, false, "load 16 of 256 points of a shape, or check it"},
     {"open", passo_run_open, NULL, 0, 0, false, "connect to the core again"},
+#ifdef PASSO_BOTH /* an image with grbl */
+    {"grbl", passo_run_grbl, NULL, 0, 0, false, "restart as grbl"},
+#endif
     {"version", passo_run_version, NULL, 0, 0, true, "versions of console and core"},
     {"help", passo_run_help, TAKES(HELP_KEYS), 1, true, "this list, or the keys of one command"},
 };

@@ -33,6 +33,7 @@ struct passo_console_board {
 	uint32_t spi_fast_hz; /* clock of the core from which it can be fast */
 	/* Number of receive overruns of the serial line. */
 	uint32_t (*lost_bytes)(void *context);
+	void (*leave)(void); /* for what else is in the image */
 	void *context;
 };
 

@@ -201,6 +201,16 @@ bool passo_run_open(const struct passo_call *call)
 	return passo_answer(call, passo_commands_open(call->console));
 }
 
+#ifdef PASSO_BOTH
+bool passo_run_grbl(const struct passo_call *call)
+{
+	if (passo_commands_is_moving(call->console))
+		return passo_answer(call, PASSO_ERROR_MOVING);
+	call->console->board.leave();
+	return passo_answer(call, PASSO_OK);
+}
+#endif
+
 bool passo_run_clear(const struct passo_call *call)
 {
 	return passo_answer(call, passo_commands_clear(call->console, call->channel));

@@ -5,13 +5,14 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "passo_plan.h"
 #include "passo_registers.h"
 
-/* Names and texts are tables of their own: a program that says only names does not have the texts. X(name,
- * text) of what the two have in common. */
-#define ERRORS(X)                                                                                            \
+/* X(name, text) in the order of the codes; G and P are those of calls that PASSO_WITHOUT_GOTO and
+ * PASSO_WITHOUT_PARTS leave out. */
+#define ERRORS(X, G, P)                                                                                      \
 	X(NOT_OPEN, "the core is not open; the error of passo_open() says why")                              \
 	X(UNITS, "the axis has no steps per unit, or the position overflows")                                \
 	X(TIMEOUT, "timeout; the motion continues")                                                          \
@@ -36,8 +37,8 @@
 	X(STOPPED, "the channel is stopped: clear it first")                                                 \
 	X(NOT_STOPPED, "the stop is not acknowledged yet; it is resent")                                     \
 	X(NOT_HELD, "hold or rate is not acknowledged yet; the slower one is resent")                        \
-	X(NOT_CONFIGURED, "pin settings of an axis are unknown: configure it")                               \
 	X(BROKEN, "a command was cut off: stop or abort, then clear")                                        \
+	X(NOT_CONFIGURED, "pin settings of an axis are unknown: configure it")                               \
 	X(TABLE, "needs another shape table; tables load only at rest")                                      \
 	X(PINS_TOO_SLOW, "an axis would step faster than its pin timing allows")                             \
 	X(SUPPLY, "the stream source supplied an invalid line or ramp")                                      \
@@ -52,7 +53,25 @@
 	X(SWITCH_MISSED, "the switch or probe did not trigger within the distance")                          \
 	X(SWITCH_LEVEL, "the switch or probe is already at the target level")                                \
 	X(INPUTS_UNKNOWN, "an input is not stable yet; motions wait for it")                                 \
+	G(NO_CLOCK, "the hardware has no microsecond clock")                                                 \
 	X(LATE, "the host was too late to retarget the motion")                                              \
+	P(NO_OUTPUTS, "the core was built without outputs")                                                  \
+	P(POWER, "power must be at most 65535, and 0 on a raster line")                                      \
+	P(REFERENCE, "the power reference must be above 0 and at most 1/2")                                  \
+	P(ABOVE_REFERENCE, "faster than the power reference")                                                \
+	P(PWM, "the PWM frequency is 0, too low, or above half the clock")                                   \
+	P(LAG_TOO_LONG, "the output delay must be at most 65535 clocks")                                     \
+	P(PITCH, "the raster pitch must be 1 to 2^30 - 1 substeps")                                          \
+	P(INTERVAL, "the compare interval is 0")                                                             \
+	P(PULSE, "the compare pulse must be 1 to 65535 clocks")                                              \
+	P(NO_ENCODERS, "the core was built without encoders")                                                \
+	P(ENCODER_FILTER, "the encoder filter must be at most 255 clocks")                                   \
+	P(RATIO, "the encoder's counts per step are 0")                                                      \
+	P(FOLLOWING_LIMIT, "the following-error limit is 0")                                                 \
+	P(OFF_SCALE, "the following error is saturated: home the axis")                                      \
+	P(NO_COUNTS, "a thread needs at least one encoder count")                                            \
+	P(STEEP, "a thread must have at most 64 steps per count")                                            \
+	P(FOLLOW_SPEED, "the encoder's top speed is 0 or too high")                                          \
 	X(LINE_UNDERRUN, "stopped: a line ended and none was queued")                                        \
 	X(RAMP_UNDERRUN, "stopped: ran out of ramps at speed")                                               \
 	X(STEP_OVERRUN, "stopped: steps came faster than the pin timing allows")                             \
@@ -63,33 +82,6 @@
 	X(WATCHDOG, "stopped: watchdog timeout, no frame from the host")                                     \
 	X(ESTOP, "e-stop: release it, clear it, clear the channel, enable the drives")                       \
 	X(FOLLOWING, "stopped: following error over its limit, or thread lost the spindle phase")
-#ifdef PASSO_WITHOUT_GOTO
-#define ERRORS_OF_GOTO(X) /* of calls that are left out */
-#else
-#define ERRORS_OF_GOTO(X) X(NO_CLOCK, "the hardware has no microsecond clock")
-#endif
-#ifdef PASSO_WITHOUT_PARTS
-#define ERRORS_OF_PARTS(X) /* of calls that are left out */
-#else
-#define ERRORS_OF_PARTS(X)                                                                                   \
-	X(NO_OUTPUTS, "the core was built without outputs")                                                  \
-	X(POWER, "power must be at most 65535, and 0 on a raster line")                                      \
-	X(REFERENCE, "the power reference must be above 0 and at most 1/2")                                  \
-	X(ABOVE_REFERENCE, "faster than the power reference")                                                \
-	X(PWM, "the PWM frequency is 0, too low, or above half the clock")                                   \
-	X(LAG_TOO_LONG, "the output delay must be at most 65535 clocks")                                     \
-	X(PITCH, "the raster pitch must be 1 to 2^30 - 1 substeps")                                          \
-	X(INTERVAL, "the compare interval is 0")                                                             \
-	X(PULSE, "the compare pulse must be 1 to 65535 clocks")                                              \
-	X(NO_ENCODERS, "the core was built without encoders")                                                \
-	X(ENCODER_FILTER, "the encoder filter must be at most 255 clocks")                                   \
-	X(RATIO, "the encoder's counts per step are 0")                                                      \
-	X(FOLLOWING_LIMIT, "the following-error limit is 0")                                                 \
-	X(OFF_SCALE, "the following error is saturated: home the axis")                                      \
-	X(NO_COUNTS, "a thread needs at least one encoder count")                                            \
-	X(STEEP, "a thread must have at most 64 steps per count")                                            \
-	X(FOLLOW_SPEED, "the encoder's top speed is 0 or too high")
-#endif
 #define REFUSALS(X)                                                                                          \
 	X(BAD_CRC, "rejected: wrong CRC")                                                                    \
 	X(BAD_LENGTH, "rejected: invalid length")                                                            \
@@ -100,19 +92,44 @@
 	X(BUSY, "rejected: not allowed in the channel's state")                                              \
 	X(BAD_VALUE, "rejected: a value is out of range")
 
-#define NAME(name, text) [PASSO_ERROR_##name] = #name,
-#define TEXT(name, text) [PASSO_ERROR_##name] = text,
-#define REFUSAL_NAME(name, text) [PASSO_VERDICT_##name] = #name,
-#define REFUSAL_TEXT(name, text) [PASSO_VERDICT_##name] = text,
+/* Strings one behind the other, which takes less flash than a pointer to each. Names and texts are apart: a
+ * program that says only names does not have the texts. */
+#define FIRST_REFUSAL PASSO_VERDICT_BAD_CRC
+#define FIRST_REFUSED (PASSO_ERROR_REFUSED + (unsigned)FIRST_REFUSAL)
 
-static const char *const error_names[PASSO_ERROR_COUNT] = {
-    [PASSO_OK] = "OK", [PASSO_PENDING] = "PENDING", ERRORS(NAME) ERRORS_OF_GOTO(NAME) ERRORS_OF_PARTS(NAME)};
-static const char *const error_texts[PASSO_ERROR_COUNT] = {[PASSO_OK] = "no error",
-    [PASSO_PENDING] = "the frame is still in flight",
-    ERRORS(TEXT) ERRORS_OF_GOTO(TEXT) ERRORS_OF_PARTS(TEXT)};
+#define NAME(name, text) #name "\0"
+#define TEXT(name, text) text "\0"
+#define LEFT_OUT(name, text) "\0"
+#ifdef PASSO_WITHOUT_GOTO
+#define OF_GOTO(part) LEFT_OUT
+#else
+#define OF_GOTO(part) part
+#endif
+#ifdef PASSO_WITHOUT_PARTS
+#define OF_PARTS(part) LEFT_OUT
+#else
+#define OF_PARTS(part) part
+#endif
 
-static const char *const refusal_names[PASSO_VERDICT_BAD_VALUE + 1u] = {REFUSALS(REFUSAL_NAME)};
-static const char *const refusal_texts[PASSO_VERDICT_BAD_VALUE + 1u] = {REFUSALS(REFUSAL_TEXT)};
+static const char error_names[] = "OK\0PENDING\0" ERRORS(NAME, OF_GOTO(NAME), OF_PARTS(NAME));
+static const char error_texts[] =
+    "no error\0the frame is still in flight\0" ERRORS(TEXT, OF_GOTO(TEXT), OF_PARTS(TEXT));
+static const char refusal_names[] = REFUSALS(NAME);
+static const char refusal_texts[] = REFUSALS(TEXT);
+
+#define PLACE(name, text) char name;
+struct errors {
+	char OK, PENDING;
+	ERRORS(PLACE, PLACE, PLACE)
+};
+struct refusals {
+	REFUSALS(PLACE)
+};
+#define IN_ORDER(name, text) _Static_assert(offsetof(struct errors, name) == PASSO_ERROR_##name, #name);
+ERRORS(IN_ORDER, IN_ORDER, IN_ORDER)
+#define REFUSAL_IN_ORDER(name, text)                                                                         \
+	_Static_assert(offsetof(struct refusals, name) == PASSO_VERDICT_##name - FIRST_REFUSAL, #name);
+REFUSALS(REFUSAL_IN_ORDER)
 
 #define ARGUMENT(which) [PASSO_ERROR_ARGUMENT_##which - PASSO_ERROR_ARGUMENT]
 static const char *const arguments[PASSO_ERROR_ARGUMENT_END - PASSO_ERROR_ARGUMENT] = {
@@ -144,17 +161,17 @@ static bool is_of_plan(enum passo_error error)
 	return error >= PASSO_ERROR_PLAN && error < PASSO_ERROR_ABSURD;
 }
 
-/* The entry of an error of the driver or of a refusal; `unknown` if there is none. */
-static const char *find(
-    unsigned code, const char *const *errors, const char *const *refusals, const char *unknown)
+/* The string of an error of the driver or of a refusal; `unknown` if there is none. */
+static const char *find(unsigned code, const char *errors, const char *refusals, const char *unknown)
 {
-	const char *found = NULL;
+	const bool refused = code - FIRST_REFUSED <= PASSO_VERDICT_BAD_VALUE - FIRST_REFUSAL;
+	const char *at = refused ? refusals : errors;
 
-	if (code < PASSO_ERROR_COUNT)
-		found = errors[code];
-	else if (code >= PASSO_ERROR_REFUSED && code - PASSO_ERROR_REFUSED <= PASSO_VERDICT_BAD_VALUE)
-		found = refusals[code - PASSO_ERROR_REFUSED];
-	return found ? found : unknown;
+	if (!refused && code >= PASSO_ERROR_COUNT)
+		return unknown;
+	for (unsigned before = refused ? code - FIRST_REFUSED : code; before > 0; before--)
+		at += strlen(at) + 1;
+	return *at != '\0' ? at : unknown;
 }
 
 const char *passo_error_name(enum passo_error error)

@@ -36,6 +36,21 @@ static bool wait_for(const volatile uint32_t *reg, uint32_t mask, uint32_t value
 	return true;
 }
 
+uint32_t board_flash_kilobytes(void)
+{
+	return FLASH_KILOBYTES;
+}
+
+const char *board_chip(void)
+{
+	return FLASH_KILOBYTES >= 128u ? "STM32F103xB" : "STM32F103x8";
+}
+
+bool board_was_off(void)
+{
+	return (RCC->csr & RCC_CSR_PORRSTF) != 0u;
+}
+
 /* Switches from the internal oscillator to the PLL. Returns whether there is a crystal. */
 static bool start_clocks(void)
 {

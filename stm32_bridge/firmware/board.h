@@ -7,6 +7,13 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* Flash of the chip in KiB, by its register; and the name of a chip with as much: "STM32F103xB". */
+uint32_t board_flash_kilobytes(void);
+const char *board_chip(void);
+
+/* Whether the power was off before this start; only before board_start(). */
+bool board_was_off(void);
+
 /* Starts clocks (72 MHz from the crystal, or 64 MHz from the internal oscillator without one), pins and time.
  * Returns whether there is a crystal. */
 bool board_start(void);

@@ -2,13 +2,21 @@
  * Main loop: passes serial input to the console, polls the core and feeds the watchdog.
  */
 #include "board.h"
+#include "image.h"
 #include "passo_console.h"
 #include "spi.h"
 #include "uart.h"
 
 #define BYTES_PER_ROUND 64u /* so that a flood of text does not starve the core */
 
-static struct passo_console console;
+/* What the image has not, behind the name of the chip. */
+#if defined PASSO_WITHOUT_GOTO && defined PASSO_WITHOUT_PARTS
+#define LEFT_OUT "%s: no goto, outputs, encoders"
+#else
+#define LEFT_OUT "%s"
+#endif
+
+static struct passo_console console ONLY_CONSOLE;
 
 static void write_text(void *context, const char *text)
 {
@@ -47,7 +55,7 @@ static void report(const struct passo_sink *sink, bool crystal, bool crc_unit)
 {
 	struct board_fault fault = board_last_fault();
 
-	passo_say(sink, "\nnote: reset by %s\n", board_reset_cause());
+	passo_say(sink, "\nnote: reset by %s\nnote: " LEFT_OUT "\n", board_reset_cause(), board_chip());
 	if (fault.exception != 0u)
 		passo_say(sink, "note: exception %u at 0x%x\n", fault.exception, fault.address);
 	if (!crystal)
@@ -67,7 +75,11 @@ int main(void)
 	static const struct passo_console_board board = {.set_baud = set_baud,
 	    .set_spi_fast = set_spi_fast,
 	    .spi_fast_hz = SPI_FAST_HZ,
-	    .lost_bytes = lost_bytes};
+	    .lost_bytes = lost_bytes,
+#ifdef PASSO_BOTH
+	    .leave = image_choose_grbl
+#endif
+	};
 	bool crystal = board_start();
 
 	board_watchdog_start();
@@ -89,6 +101,7 @@ int main(void)
 		passo_console_poll(&console);
 		board_led(!passo_console_is_well(&console));
 		board_watchdog_feed();
+		image_mind_choice();
 		if (bytes == 0u)
 			board_sleep();
 	}

@@ -59,6 +59,7 @@ struct flash {
 #define FLASH_CR_STRT BIT(6)
 #define FLASH_CR_LOCK BIT(7)
 #define FLASH_PAGE_BYTES 1024u
+#define FLASH_KILOBYTES (*(volatile const uint16_t *)0x1FFFF7E0u)
 
 /* --------------------------------------------------------------------------------------------------- pins */
 

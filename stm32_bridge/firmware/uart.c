@@ -44,12 +44,17 @@ void uart_start(uint32_t baud)
 	USART1->cr1 = USART_CR1_UE | USART_CR1_TE | USART_CR1_RE;
 }
 
-void uart_set_baud(uint32_t baud)
+void uart_finish(void)
 {
 	while (sending.head != sending.tail)
 		wait_for_interrupt();
 	while ((USART1->sr & USART_SR_TC) == 0u)
 		continue;
+}
+
+void uart_set_baud(uint32_t baud)
+{
+	uart_finish();
 	set_divider(baud);
 }
 

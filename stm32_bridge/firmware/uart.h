@@ -11,7 +11,10 @@
 
 void uart_start(uint32_t baud);
 
-/* Changes the baud rate after all queued text has been sent. */
+/* Waits until all queued text has been sent. */
+void uart_finish(void);
+
+/* The same, then changes the baud rate. */
 void uart_set_baud(uint32_t baud);
 
 /* Queues text for sending; waits while the ring is full. */

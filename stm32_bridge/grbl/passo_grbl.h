@@ -51,6 +51,8 @@ struct passo_grbl_setup {
 	uint8_t homed; /* axes that home; without a home switch on their limit switch */
 	bool probe;    /* a probe is fitted */
 	const struct passo_storage_pages *pages; /* null: no persistent storage */
+	/* Takes the text of a `$` line that is the board's own, at rest; null: it has none. */
+	bool (*take_line)(const char *text);
 };
 
 /* All members are private. */

@@ -63,8 +63,9 @@ void passo_grbl_report_build(struct passo_grbl *grbl)
 
 	passo_host_read(
 	    grbl->player->feed->passo->host, PASSO_ADDRESS_VERSION, words, sizeof words / sizeof *words);
-	passo_grbl_say(
-	    grbl, "[VER:1.1h.passo:]\r\n[OPT:VNM,48,255]\r\n[FIRMWARE:Passo " PASSO_RELEASE "]\r\n[CORE:");
+	passo_grbl_say(grbl, "[VER:1.1h.passo:]\r\n[OPT:VNM,");
+	passo_grbl_say_number(grbl, grbl->player->feed->path->capacity);
+	passo_grbl_say(grbl, ",255]\r\n[FIRMWARE:Passo " PASSO_RELEASE "]\r\n[CORE:");
 	for (unsigned bit = PASSO_VERSION_MAJOR_LSB + 8u; bit > 0; bit -= 8u) {
 		passo_grbl_say_number(grbl, words[0] >> (bit - 8u) & 0xFFu);
 		passo_grbl_say(grbl, bit > 8u ? "." : ":");

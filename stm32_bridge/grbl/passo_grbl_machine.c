@@ -19,6 +19,25 @@ static uint64_t fixed(int64_t millionths, uint32_t divisor)
 	return passo_mul_div((uint64_t)millionths, ONE, MILLION * divisor);
 }
 
+/* A machine with a jerk for every axis has profile jerk. */
+static void set_profile(struct passo_path_settings *path, const struct passo_grbl_settings *settings)
+{
+#ifdef PASSO_LINEAR_PATHS
+	(void)path, (void)settings;
+#else
+	bool limited = true;
+
+	for (unsigned axis = 0; axis < path->machine.axes; axis++) {
+		path->axis[axis].jerk = fixed(settings->axis[PASSO_GRBL_JERK][axis], 1);
+		limited = limited && path->axis[axis].jerk > 0;
+	}
+	if (limited)
+		path->profile = PASSO_PROFILE_JERK;
+	else if (path->profile == PASSO_PROFILE_JERK)
+		path->profile = PASSO_PROFILE_LINEAR;
+#endif
+}
+
 static struct passo_path_settings path_of(const struct passo_grbl *grbl)
 {
 	const struct passo_grbl_settings *settings = &grbl->stored.settings;
@@ -29,6 +48,7 @@ static struct passo_path_settings path_of(const struct passo_grbl *grbl)
 		path.axis[axis].speed = fixed(settings->axis[PASSO_GRBL_SPEED][axis], SECONDS_PER_MINUTE);
 		path.axis[axis].acceleration = fixed(settings->axis[PASSO_GRBL_ACCELERATION][axis], 1);
 	}
+	set_profile(&path, settings);
 	path.junction_deviation = fixed(settings->value[PASSO_GRBL_DEVIATION], 1);
 	return path;
 }

@@ -5,12 +5,9 @@
 
 #include <stddef.h>
 
-#define AXES_AT 100u /* first number of the settings of axes; ten numbers for each */
-#define AXES_STEP 10u
-
 /* Ranges are whole numbers; `positive`: above 0 as well. */
 struct kind {
-	uint8_t number;
+	uint16_t number; /* of an axis: that of X, the others follow */
 	bool whole, positive;
 	uint32_t most;
 };
@@ -46,35 +43,38 @@ static const struct kind AXIS_KINDS[PASSO_GRBL_AXIS_SETTINGS] = {
     [PASSO_GRBL_SPEED] = {110, false, true, 10000000},
     [PASSO_GRBL_ACCELERATION] = {120, false, true, 1000000},
     [PASSO_GRBL_TRAVEL] = {130, false, true, 100000},
+#ifndef PASSO_LINEAR_PATHS
+    [PASSO_GRBL_JERK] = {800, false, false, 999999999},
+#endif
 };
 
-static const struct kind *find(unsigned number, unsigned axes, unsigned *index)
+static const struct kind *find(unsigned number, unsigned axes)
 {
-	if (number >= AXES_AT) {
-		*index = (number - AXES_AT) / AXES_STEP;
-		return *index < PASSO_GRBL_AXIS_SETTINGS && number % AXES_STEP < axes ? &AXIS_KINDS[*index]
-		                                                                      : NULL;
+	for (unsigned i = 0; i < PASSO_GRBL_SETTINGS; i++) {
+		if (KINDS[i].number == number)
+			return &KINDS[i];
 	}
-	for (*index = 0; *index < PASSO_GRBL_SETTINGS; (*index)++) {
-		if (KINDS[*index].number == number)
-			return &KINDS[*index];
+	for (unsigned i = 0; i < PASSO_GRBL_AXIS_SETTINGS; i++) {
+		if (number - AXIS_KINDS[i].number < axes)
+			return &AXIS_KINDS[i];
 	}
 	return NULL;
 }
 
 int64_t *passo_grbl_setting(struct passo_grbl_settings *settings, unsigned number, unsigned axes)
 {
-	unsigned index = 0;
+	const struct kind *kind = find(number, axes);
 
-	if (!find(number, axes, &index))
+	if (!kind)
 		return NULL;
-	return number >= AXES_AT ? &settings->axis[index][number % AXES_STEP] : &settings->value[index];
+	return kind >= KINDS && kind < KINDS + PASSO_GRBL_SETTINGS
+	         ? &settings->value[kind - KINDS]
+	         : &settings->axis[kind - AXIS_KINDS][number - kind->number];
 }
 
 uint32_t passo_grbl_setting_most(unsigned number, unsigned axes, bool *positive)
 {
-	unsigned index = 0;
-	const struct kind *kind = find(number, axes, &index);
+	const struct kind *kind = find(number, axes);
 
 	*positive = kind && kind->positive;
 	return kind ? kind->most : 0;
@@ -88,7 +88,7 @@ unsigned passo_grbl_setting_number(unsigned index, unsigned axes, bool *whole)
 	}
 	index -= PASSO_GRBL_SETTINGS;
 	*whole = false;
-	return index < PASSO_GRBL_AXIS_SETTINGS * axes ? AXES_AT + index / axes * AXES_STEP + index % axes
+	return index < PASSO_GRBL_AXIS_SETTINGS * axes ? AXIS_KINDS[index / axes].number + index % axes
 	                                               : PASSO_GRBL_NO_SETTING;
 }
 
@@ -106,8 +106,7 @@ bool passo_grbl_has_axis(
 enum passo_gcode_error passo_grbl_set(
     struct passo_grbl_settings *settings, unsigned number, unsigned axes, int64_t value)
 {
-	unsigned index = 0;
-	const struct kind *kind = find(number, axes, &index);
+	const struct kind *kind = find(number, axes);
 
 	if (!kind)
 		return PASSO_GCODE_STATEMENT;

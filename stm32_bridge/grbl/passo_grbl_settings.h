@@ -42,6 +42,9 @@ enum passo_grbl_axis_setting {
 	PASSO_GRBL_SPEED,        /* $110: mm/min */
 	PASSO_GRBL_ACCELERATION, /* $120: mm/s^2 */
 	PASSO_GRBL_TRAVEL,       /* $130: mm */
+#ifndef PASSO_LINEAR_PATHS
+	PASSO_GRBL_JERK, /* $800: mm/s^3; profile jerk if no axis has 0, else not */
+#endif
 	PASSO_GRBL_AXIS_SETTINGS
 };
 

@@ -70,7 +70,7 @@ static enum passo_gcode_error at_rest(struct passo_grbl *grbl, const char *text)
 		return sleep(grbl);
 	else if (strncmp(text, "RST=", 4) == 0)
 		return passo_grbl_restore(grbl, text + 4);
-	else
+	else if (!grbl->setup->take_line || !grbl->setup->take_line(text))
 		return passo_grbl_change(grbl, text);
 	return PASSO_GCODE_OK;
 }

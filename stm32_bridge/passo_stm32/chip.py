@@ -28,8 +28,8 @@ class Chip(Processor, ABC):
 
     baud: int  # of the terminal
 
-    def __init__(self, elf: Path, *, crystal: bool):
-        super().__init__(elf, self._on_read, self._on_write, self._on_program)
+    def __init__(self, elf: Path, *, crystal: bool, flash_size: int | None):
+        super().__init__(elf, self._on_read, self._on_write, self._on_program, flash_size)
         self.crystal = crystal
         self.resets: list[tuple[int, str]] = []  # tick and cause
         self.faults: list[str] = []  # causes of hard faults

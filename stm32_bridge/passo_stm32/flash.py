@@ -4,7 +4,7 @@
 from passo_stm32.bus import TICKS_PER_SECOND, WORD, MachineError, Peripheral, Register
 
 KEYS = (0x45670123, 0xCDEF89AB)
-FIRST, PAGE, PAGES = 0x08000000, 1024, 64
+FIRST, PAGE = 0x08000000, 1024
 HALF_WORD = 2
 ERASED = b"\xff"
 PROGRAM, PAGE_ERASE, MASS_ERASE, START, LOCK = 0, 1, 2, 6, 7  # bits of CR
@@ -97,7 +97,7 @@ class Flash(Peripheral):
         page = (address - FIRST) // PAGE
         if not self.machine.rcc.bit("CR", 0):
             raise MachineError("flash is changed without the internal oscillator")
-        if not 0 <= page < PAGES:
+        if not 0 <= page < self.machine.flash_size // PAGE:
             raise MachineError(f"there is no flash at 0x{address:08X}")
         begin = FIRST + page * PAGE
         if any(at < begin + PAGE and begin < at + len(data) for at, data in self.machine.elf.segments):

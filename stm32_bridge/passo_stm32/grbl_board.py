@@ -9,21 +9,22 @@ from passo.toolchain import paths
 
 from passo_stm32.board import make_firmware
 from passo_stm32.machine import Machine
-from passo_stm32.processor import FLASH, FLASH_SIZE
+from passo_stm32.processor import FLASH
 from passo_stm32.wires import CorePins
 
 FOLDER = paths.build / "firmware_grbl"
+SMALL_IMAGE, BOTH_IMAGE = "GRBL=1", "CHIP=cb"  # images, as their makefile calls them
 GREETING = "Grbl 1.1h ['$' for help]\r\n"
 START = 0.5  # seconds until the greeting
 RECEIVED = 128  # bytes that senders count with
 ANSWER = re.compile(r"^(ok|error:\d+)\r\n", re.M)
 
 
-def grbl_elf(folder: Path = FOLDER, *machine: str) -> Path:
-    """Build the image if it is out of date; `machine` are the definitions of grbl_machine.h, AXES=3 ... ."""
+def grbl_elf(folder: Path = FOLDER, *machine: str, image: str = SMALL_IMAGE) -> Path:
+    """Build an image if it is out of date; `machine` are the definitions of grbl_machine.h, AXES=3 ... ."""
     elf = folder / "passo.elf"
     flags = " ".join(f"-D{definition}" for definition in machine)
-    make_firmware("GRBL=1", f"OUT={folder}", f"MACHINE={flags}", str(elf))
+    make_firmware(image, f"OUT={folder}", f"MACHINE={flags}", str(elf))
     return elf
 
 
@@ -54,7 +55,7 @@ class GrblBoard(Machine):
     @property
     def settings(self) -> bytes:
         """The pages of the flash with the settings."""
-        return self.read_memory(self._settings_at, FLASH + FLASH_SIZE - self._settings_at)
+        return self.read_memory(self._settings_at, FLASH + self.flash_size - self._settings_at)
 
     @property
     def _settings_at(self) -> int:

@@ -10,17 +10,17 @@ from passo.engine import EVENT, Engine
 from passo_stm32.bus import TICKS_PER_SECOND, MachineError
 from passo_stm32.chip import Chip
 from passo_stm32.gpio import ALTERNATE_PUSH_PULL, PORTS
-from passo_stm32.processor import FLASH, FLASH_SIZE
+from passo_stm32.processor import FLASH
 from passo_stm32.wires import CorePins, Wires
 
-HANG = FLASH_SIZE - 2  # address of the endless loop of `hang`
 BRANCH_TO_ITSELF = b"\xfe\xe7"
 
 
 class Machine(Chip):
     """A powered microcontroller; the first `run` starts the firmware.
 
-    The engine must be new; its clock_hz is the clock of the core. Without `crystal` there is no crystal.
+    The engine must be new; its clock_hz is the clock of the core. Without `crystal` there is no crystal. The
+    flash has `flash_size` bytes, or as many as the program is linked for.
     """
 
     def __init__(
@@ -33,8 +33,9 @@ class Machine(Chip):
         select: str = "PA4",
         irq: str = "PB0",
         seed: int = 1,
+        flash_size: int | None = None,
     ):
-        super().__init__(elf, crystal=crystal)
+        super().__init__(elf, crystal=crystal, flash_size=flash_size)
         self.baud = baud  # of the terminal
         self.wires = Wires(core, seed)
         self.output = ""  # what the terminal received
@@ -85,8 +86,9 @@ class Machine(Chip):
 
     def hang(self) -> None:
         """Inject a fault: the processor enters an endless loop; interrupts keep working."""
-        self.write_memory(FLASH + HANG, BRANCH_TO_ITSELF)
-        self.jump(FLASH + HANG)
+        end = FLASH + self.flash_size - len(BRANCH_TO_ITSELF)
+        self.write_memory(end, BRANCH_TO_ITSELF)
+        self.jump(end)
 
     def jump(self, address: int) -> None:
         """Inject a fault: the processor continues at an address."""

@@ -11,7 +11,7 @@ from passo.native import ffi, processor
 from passo_stm32.bus import MachineError
 from passo_stm32.elf import Elf
 
-FLASH, FLASH_SIZE = 0x08000000, 64 << 10
+FLASH, FLASH_SIZE = 0x08000000, 64 << 10  # the size unless the program is linked for another
 RAM, RAM_SIZE = 0x20000000, 20 << 10
 UNTOUCHED = 0xA5  # contents of RAM at power-on
 REGISTERS, LINK_REGISTER = 17, 14  # of passo_cpu_registers()
@@ -22,10 +22,11 @@ Program = Callable[[Any, int, int, int], bool]
 
 
 class Processor:
-    """A processor (sim/engine/passo_cpu.h) with an ELF file in its flash."""
+    """A processor (sim/engine/passo_cpu.h) with an ELF file in its flash, as far as that goes."""
 
-    def __init__(self, elf: Path, read: Read, write: Write, program: Program):
+    def __init__(self, elf: Path, read: Read, write: Write, program: Program, flash_size: int | None = None):
         self.elf = Elf.read(elf)
+        self.flash_size = flash_size or self.elf.symbols.get("FLASH_BYTES", FLASH_SIZE)
         self._measured: list[int] = []
         self._profile_measured = False
         self._make_processor(read, write, program)
@@ -41,21 +42,21 @@ class Processor:
         self._write_callback = ffi().callback("void(void *, uint32_t, uint32_t, uint32_t)", write)
         self._program_callback = ffi().callback("bool(void *, uint32_t, uint32_t, uint32_t)", program)
         callbacks = self._read_callback, self._write_callback, self._program_callback
-        config = ffi().new("struct passo_cpu_config *", (FLASH_SIZE, RAM_SIZE, *callbacks, ffi().NULL))
+        config = ffi().new("struct passo_cpu_config *", (self.flash_size, RAM_SIZE, *callbacks, ffi().NULL))
         cpu = c.passo_cpu_create(config)
         if cpu == ffi().NULL:
             raise MachineError("unicorn has no Cortex-M3")
         self.cpu = ffi().gc(cpu, c.passo_cpu_destroy)
         self.write_memory(RAM, bytes([UNTOUCHED]) * RAM_SIZE)
         for address, data in self.elf.segments:
-            self.write_memory(address, data)
+            self.write_memory(address, data[: FLASH + self.flash_size - address])
 
     def profile(self, on: bool = True) -> None:
         """Start or stop counting the instructions of each address."""
         self.cpu.profile = self._start_profile() if on else ffi().NULL
 
     def _start_profile(self) -> Any:
-        self._counters = ffi().new("uint32_t[]", FLASH_SIZE // 2)
+        self._counters = ffi().new("uint32_t[]", self.flash_size // 2)
         return self._counters
 
     def profiled(self) -> dict[str, int]:

@@ -5,7 +5,8 @@
 
 #include "stm32f103.h"
 
-#define PAGE_WORDS (FLASH_PAGE_BYTES / sizeof(uint32_t))
+#define PAGE_BYTES (SETTINGS_BYTES / 2u)
+#define PAGE_WORDS (PAGE_BYTES / sizeof(uint32_t))
 #define ROUNDS_MAX 1000000u /* of at least 6 clocks: 80 ms */
 #define ERRORS (FLASH_SR_PGERR | FLASH_SR_WRPRTERR)
 
@@ -49,13 +50,16 @@ static bool read(void *context, unsigned page, size_t at, uint32_t *words, size_
 
 static bool erase(void *context, unsigned page)
 {
+	bool good = true;
+
 	(void)context;
 	unlock();
-	FLASH->cr = FLASH_CR_PER;
-	FLASH->ar = (uint32_t)(uintptr_t)word_of(page, 0);
-	FLASH->cr = FLASH_CR_PER | FLASH_CR_STRT;
-	const bool good = has_ended();
-
+	for (uint32_t at = 0; good && at < PAGE_BYTES; at += FLASH_PAGE_BYTES) {
+		FLASH->cr = FLASH_CR_PER;
+		FLASH->ar = (uint32_t)(uintptr_t)word_of(page, 0) + at;
+		FLASH->cr = FLASH_CR_PER | FLASH_CR_STRT;
+		good = has_ended();
+	}
 	FLASH->cr = FLASH_CR_LOCK;
 	return good;
 }

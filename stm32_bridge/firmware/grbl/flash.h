@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The last two pages of the flash, for settings. The processor stalls while a page is erased (up to
+ * The end of the flash, for settings: two pages, each of one or more of the chip. The processor stalls while a page is erased (up to
  * 40 ms) or a half-word is programmed (70 us): bytes from the host are lost meanwhile.
  */
 #ifndef FLASH_H

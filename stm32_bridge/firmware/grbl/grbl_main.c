@@ -1,28 +1,42 @@
 /* SPDX-License-Identifier: MIT
  * The grbl image: the UART feeds the protocol, which feeds the core.
  */
+#include <string.h>
+
 #include "board.h"
 #include "flash.h"
 #include "grbl_machine.h"
+#include "image.h"
 #include "spi.h"
 #include "uart.h"
 
-#define LOOK_AHEAD 48u       /* lines */
+#ifdef PASSO_LINEAR_PATHS
+#define LOOK_AHEAD 48u /* lines */
+#else
+#define LOOK_AHEAD 40u /* they have more axes, and jerk */
+#endif
 #define SLEWS_PER_SECOND 20u /* of hold and stop, from full speed */
 #define DRAIN_VELOCITY 65536u
 #define SLEEP_MICROSECONDS 4000u /* a sleep takes up to a quarter */
 #define REPORT_BYTES 384u        /* a report of six axes, and some answers */
 #define SEARCH_MILLISECONDS 100u
 
-static struct passo_path_item items[LOOK_AHEAD];
-static struct passo_path_planner path;
-static struct passo_path_feed feed;
-static struct passo_gcode gcode;
-static struct passo_player player;
-static struct passo_grbl_setup setup;
-static struct passo_grbl grbl;
-static struct passo_host host;
-static struct passo passo;
+/* What the image has not, behind the name of the chip. */
+#ifdef PASSO_LINEAR_PATHS
+#define LEFT_OUT ": no jerk, no axes A B C, no console"
+#else
+#define LEFT_OUT ""
+#endif
+
+static struct passo_path_item items[LOOK_AHEAD] ONLY_GRBL;
+static struct passo_path_planner path ONLY_GRBL;
+static struct passo_path_feed feed ONLY_GRBL;
+static struct passo_gcode gcode ONLY_GRBL;
+static struct passo_player player ONLY_GRBL;
+static struct passo_grbl_setup setup ONLY_GRBL;
+static struct passo_grbl grbl ONLY_GRBL;
+static struct passo_host host ONLY_GRBL;
+static struct passo passo ONLY_GRBL;
 
 static void write_text(void *context, const char *text)
 {
@@ -40,7 +54,7 @@ static void wait(void *context, uint32_t duration)
 		board_sleep();
 }
 
-static uint32_t spare[PASSO_FRAME_WORDS_MAX];
+static uint32_t spare[PASSO_FRAME_WORDS_MAX] ONLY_GRBL;
 
 static const struct passo_hardware hardware = {.transfer = spi_transfer,
     .microseconds = board_microseconds,
@@ -79,7 +93,9 @@ static void report(bool crystal, bool crc_unit)
 {
 	uart_write("\r\n[MSG:Reset by ");
 	uart_write(board_reset_cause());
-	uart_write("]\r\n");
+	uart_write("]\r\n[MSG:");
+	uart_write(board_chip());
+	uart_write(LEFT_OUT "]\r\n");
 	if (!crystal)
 		say("No crystal: 64 MHz from the internal oscillator");
 	if (!crc_unit)
@@ -115,6 +131,18 @@ static enum passo_error open_core(void)
 	return error;
 }
 
+#ifdef PASSO_BOTH
+static bool take_line(const char *text)
+{
+	if (strcmp(text, "CONSOLE") != 0)
+		return false;
+	image_choose_console();
+	return true;
+}
+#else
+static bool (*const take_line)(const char *text) = NULL;
+#endif
+
 /* Until there is a core at rest. Each new error is reported. */
 static void connect(void)
 {
@@ -143,6 +171,7 @@ static void start(void)
 	path.items = items;
 	path.capacity = LOOK_AHEAD;
 	grbl_machine(&setup, &passo, &flash_pages);
+	setup.take_line = take_line;
 	passo_gcode_open(
 	    &gcode, &(struct passo_gcode_settings){.axes = setup.path.machine.axes, .arc_tolerance = 1});
 	passo_path_feed_open(&feed, &passo, &path);
@@ -173,6 +202,7 @@ int main(void)
 			passo_grbl_poll(&grbl);
 			board_led(passo_fault(&passo) != PASSO_OK);
 			board_watchdog_feed();
+			image_mind_choice();
 			if (progress() == before && !passo_path_feed_is_short(&feed, SLEEP_MICROSECONDS))
 				board_sleep();
 		}
