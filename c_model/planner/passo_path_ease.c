@@ -142,7 +142,7 @@ uint64_t passo_path_shaped_corner(const struct passo_path_planner *path,
 		most = passo_mul_div(
 		    2 * passo_mul_div(along, ACROSS, UINT32_C(1) << 16), path->gentleness, UINT32_C(1) << 16);
 	} else if (soft) {
-		fastest = soft_square(radius, jerk);
+		fastest = soft_square(radius, jerk / 2);
 	}
 	if (corner->bends_before)
 		ease(path, last, quarters, most);

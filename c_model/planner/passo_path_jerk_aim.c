@@ -32,9 +32,11 @@ struct reach {
 	struct passo_path_law law;
 	uint64_t length;
 	uint64_t lowest; /* velocity that their limits and corners allow */
-	uint64_t rise;   /* length from which on more is allowed than before; 0: none */
-	uint64_t open;   /* `lowest` at the first end of a line that is not settled; 0: none */
-	uint64_t pause;  /* ticks for which the path goes on at the top of a ramp up, at least */
+	uint64_t
+	    rise; /* length from which on more is allowed than before, or of a ramp at the pace; 0: none */
+	uint64_t open;  /* `lowest` at the first end of a line that is not settled; 0: none */
+	uint64_t least; /* of a ramp that keeps the speed */
+	uint64_t pause; /* ticks for which the path goes on at the top of a ramp up, at least */
 };
 
 static void consider(const struct passo_path_planner *path, const struct reach *reach, uint64_t end,
@@ -67,7 +69,7 @@ static void pass(const struct passo_path_planner *path, uint32_t index, struct r
 		       top = passo_path_larger(passo_path_velocity_of(item->top), from);
 
 	if (top > from && reach->lowest <= from && reach->rise == 0)
-		reach->rise = reach->length;
+		reach->rise = passo_path_larger(reach->length, reach->least);
 	reach->lowest = passo_path_smaller(reach->lowest, top);
 	reach->length += (uint64_t)item->substeps << 32;
 	if (index == path->planned)
@@ -95,6 +97,7 @@ static struct choice choose(const struct passo_path_planner *path, uint32_t leas
 
 	*reach = (struct reach){.law = {UINT64_MAX, UINT64_MAX},
 	    .lowest = UINT64_MAX,
+	    .least = passo_path_length_in(path, 2 * from, least),
 	    .pause = passo_path_pace_need(path, least, 2)};
 	for (uint32_t index = path->planned;; index++) {
 		if (passo_path_is_held_back(path, index)) {
