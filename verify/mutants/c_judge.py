@@ -21,7 +21,7 @@ from verify.mutants.fates import Fate, Fates, hash_of
 TESTS = (
     *("test_math", "test_moves", "test_plan", "test_plan_course", "test_plan_forms", "test_plan_jerk"),
     *("test_plan_methods", "test_plan_shape", "test_plan_sigmoid", "test_plan_straight", "test_plan_turn"),
-    *("test_plan_user", "test_path", "test_path_changes", "test_path_relations"),
+    *("test_plan_user", "test_path", "test_path_changes", "test_path_lines", "test_path_relations"),
     *("test_gcode", "test_gcode_arcs", "test_gcode_cycles", "test_gcode_words"),
     *("test_driver", "test_driver_dma", "test_driver_encoder"),
     *("test_driver_home", "test_driver_inputs", "test_driver_outputs", "test_driver_positions"),
@@ -31,7 +31,7 @@ TESTS = (
 MOST_FAIL = 2  # tests of a file that do not run on copies
 LONGEST = 20.0  # seconds of the processor: a test that takes longer is no judge here
 MOST = 40.0  # for all tests of a mutant
-TEST = 0.05  # what pytest needs for each
+TEST = 0.01  # what pytest needs for each
 PLAYED = "tests"  # those that reach a mutant have judged it, if there are any
 
 
