@@ -13,6 +13,7 @@ from passo import machine_check
 from passo.cli import main
 from passo.failure import Failure
 from passo.grbl import Grbl, pseudo_terminal, serve
+from passo.grbl_setup import core_for
 from passo.machine_check import Input, SerialPort, SimulatedPort, all_inputs, check, simulated
 from passo.machine_file import MachineFile, read_machine
 from passo.toolchain import paths
@@ -60,7 +61,8 @@ def test_a_good_machine(machine: MachineFile, monkeypatch: pytest.MonkeyPatch) -
         steps, back = (events[name] >> np.uint64(axis) & np.uint64(1) for name in ("step", "dir"))
         rises = np.flatnonzero(np.diff(steps.astype(int), prepend=0) > 0)
         assert back[rises].tolist() == [0, 1] * (len(rises) // 2) and len(rises) >= 2
-    for bit in (0, 2, 3) if machine.laser else range(4):
+    bits = (0, 2, 3) if machine.laser else range(4 if "outputs" in machine.parts else 0)
+    for bit in bits:
         level = (events["outputs"] >> np.uint64(bit) & np.uint64(1)).astype(int)
         assert np.count_nonzero(np.diff(level, prepend=0) > 0) >= machine_check.BLINK_COUNT
     assert not events["power"].any()
@@ -118,6 +120,22 @@ def test_the_core_of_another_file() -> None:
         pytest.raises(Failure, match="the core runs at 96000000 Hz, the machine file has 48000000"),
     ):
         check(other, port, lambda words: None)
+
+
+@pytest.mark.parametrize("right", [True, False])
+def test_the_bitstream_of_another_file(monkeypatch: pytest.MonkeyPatch, right: bool) -> None:
+    """Its identifier is not that of the one that `passo make` makes of this file."""
+    wanted = machine_check.build_of(ROUTER)
+    build = wanted if right else wanted ^ 1
+    monkeypatch.setattr(machine_check, "core_for", lambda machine: replace(core_for(machine), build=build))
+    with simulated(ROUTER) as port:
+        if right:
+            check(ROUTER, port, lambda words: None)
+            return
+        said = f"the bitstream is build {build}, that of the machine file {wanted}: load that one"
+        with pytest.raises(Failure, match=said):
+            check(ROUTER, port, lambda words: None)
+    assert wanted != machine_check.build_of(replace(ROUTER, ends=ROUTER.ends[:2]))
 
 
 @pytest.fixture

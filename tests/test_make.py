@@ -104,6 +104,7 @@ def test_the_firmware_takes_them(tmp_path: Path) -> None:
         "LIMITS_HIGH": 0,
         "HOMED": 7,
         "PROBE": 1,
+        "OUTPUTS": 1,
     }
     elf = grbl_elf(
         paths.build / "tests" / "firmware_router", *(f"{name}={value}" for name, value in definitions)

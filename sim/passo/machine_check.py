@@ -14,13 +14,18 @@ import tty
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple, Protocol, Self
+
+from passo_fpga.boards import board
+from passo_fpga.generate import generate
 
 from passo.failure import BadInputError, Failure
 from passo.gcode import AXIS_LETTERS
 from passo.grbl import Grbl
 from passo.grbl_setup import core_for
 from passo.machine_file import MachineFile, read_machine
+from passo.make_command import at_home
 from passo.run import open_engine
 
 RESET, REPORT = b"\x18", b"?"
@@ -128,6 +133,17 @@ class SimulatedPort:
         self.engine.set(pressed.pin, bits)
 
 
+def build_of(machine: MachineFile) -> int:
+    """Identifier of the bitstream that `passo make` makes of a file; 0: it has no board."""
+    if not machine.board:
+        return 0
+    chosen = board(machine.board)
+    core = len(machine.ends), machine.clock_hz / 1e6, machine.parts
+    with TemporaryDirectory() as folder:
+        design, _ = generate(chosen, Path(folder), *core, more=at_home(machine, chosen))
+    return int(design.parameters["BUILD"])
+
+
 def all_inputs(machine: MachineFile) -> list[Input]:
     """The inputs that are wired."""
     if not machine.has_inputs:
@@ -195,6 +211,9 @@ class _Check:
         self.tell(f"core {found[1]}, {int(found[2]) / 1e6:g} MHz, build {found[3]}")
         if int(found[2]) != self.machine.clock_hz:
             raise Failure(f"the core runs at {found[2]} Hz, the machine file has {self.machine.clock_hz}")
+        build, wanted = int(found[3]), build_of(self.machine) if int(found[3]) else 0
+        if build != wanted:
+            raise Failure(f"the bitstream is build {build}, that of the machine file {wanted}: load that one")
 
     def inputs(self) -> None:
         """Each input in turn."""

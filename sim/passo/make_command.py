@@ -231,6 +231,7 @@ def definitions(machine: MachineFile) -> dict[str, int]:
         "LIMITS_HIGH": _mask(machine, "limit_high"),
         "HOMED": homed,
         "PROBE": int(machine.switches.probe),
+        "OUTPUTS": int("outputs" in machine.parts),
     }
 
 

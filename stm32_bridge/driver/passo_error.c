@@ -55,7 +55,7 @@
 	X(INPUTS_UNKNOWN, "an input is not stable yet; motions wait for it")                                 \
 	G(NO_CLOCK, "the hardware has no microsecond clock")                                                 \
 	X(LATE, "the host was too late to retarget the motion")                                              \
-	P(NO_OUTPUTS, "the core was built without outputs")                                                  \
+	X(NO_OUTPUTS, "the core was built without outputs")                                                  \
 	P(POWER, "power must be at most 65535, and 0 on a raster line")                                      \
 	P(REFERENCE, "the power reference must be above 0 and at most 1/2")                                  \
 	P(ABOVE_REFERENCE, "faster than the power reference")                                                \

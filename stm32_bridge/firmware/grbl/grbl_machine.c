@@ -5,7 +5,8 @@
 #define RESERVES 200u /* in a second: the core has so much, however the lines come */
 
 #define MILLION ((int64_t)PASSO_GCODE_MILLION)
-#define AXES_USED (AXES > 0 ? AXES : PASSO_GCODE_AXES_MAX)
+#define AXES_USED (AXES > 0 ? AXES : GRBL_AXES_MAX)
+#define AXES_NEEDED (AXES > 0 ? AXES : 1)
 #define LINEAR_AXES 2u /* X and Y; Z and what follows are slow */
 
 static const uint16_t VALUES[PASSO_GRBL_SETTINGS] = {
@@ -41,6 +42,19 @@ static void grbl_defaults(struct passo_grbl_settings *settings)
 
 		settings->axis[setting][axis] = AXIS_VALUES[setting][axis >= LINEAR_AXES] * MILLION;
 	}
+}
+
+_Static_assert(AXES <= GRBL_AXES_MAX, "the image has fewer axes");
+
+enum passo_error grbl_machine_check(struct passo *passo)
+{
+	const bool inputs = (LIMITS_LOW | LIMITS_HIGH | HOMES | PROBE) != 0;
+
+	if (passo_machine(passo)->axes < AXES_NEEDED)
+		return PASSO_ERROR_PARAMETERS;
+	if (inputs && !passo->has_inputs)
+		return PASSO_ERROR_NO_INPUTS;
+	return OUTPUTS != 0 && !passo->has_outputs ? PASSO_ERROR_NO_OUTPUTS : PASSO_OK;
 }
 
 void grbl_machine(

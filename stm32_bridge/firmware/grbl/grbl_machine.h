@@ -13,10 +13,12 @@
 #define BAUD 115200
 #endif
 
-/* Axes that G-code has, of those of the core: 1 .. PASSO_GCODE_AXES_MAX; 0: all. */
+/* Axes that G-code has, of those of the core: 1 .. GRBL_AXES_MAX; 0: all. */
 #ifndef AXES
 #define AXES 0
 #endif
+#define GRBL_AXES_MAX                                                                                        \
+	(PASSO_PATH_AXES_MAX < PASSO_GCODE_AXES_MAX ? PASSO_PATH_AXES_MAX : PASSO_GCODE_AXES_MAX)
 
 /* Fitted switches, a bit per axis; and whether there is a probe. */
 #ifndef LIMITS_LOW
@@ -32,10 +34,18 @@
 #define PROBE 0
 #endif
 
+/* Whether there is a spindle, laser or coolant. */
+#ifndef OUTPUTS
+#define OUTPUTS 0
+#endif
+
 /* Axes that `$H` homes, by their home or limit switch. */
 #ifndef HOMED
 #define HOMED HOMES
 #endif
+
+/* Whether the core has what the machine needs. Errors: PARAMETERS (fewer axes), NO_INPUTS, NO_OUTPUTS. */
+enum passo_error grbl_machine_check(struct passo *passo);
 
 /* The setup of the core that is open. `pages` is where settings are kept. */
 void grbl_machine(

@@ -113,6 +113,17 @@ static void pause(uint32_t milliseconds, bool fault)
 	}
 }
 
+static void say_error(enum passo_error error)
+{
+	uart_write("[MSG:");
+	uart_write(passo_error_name(error));
+#ifdef PASSO_BOTH /* the texts are those of the console */
+	uart_write(": ");
+	uart_write(passo_error_text(error));
+#endif
+	uart_write("]\r\n");
+}
+
 /* A motion that an earlier start of the board has left running is stopped. */
 static enum passo_error open_core(void)
 {
@@ -122,6 +133,8 @@ static enum passo_error open_core(void)
 
 	if (error == PASSO_ERROR_ESTOP && passo_clear_estop(&passo) == PASSO_OK)
 		error = passo_clear(&passo);
+	if (error == PASSO_OK)
+		error = grbl_machine_check(&passo);
 	if (error == PASSO_OK) {
 		spi_set_fast(clock_hz >= SPI_FAST_HZ);
 		return passo_configure_motion(&passo, slew, slew, DRAIN_VELOCITY);
@@ -154,7 +167,7 @@ static void connect(void)
 		if (error == PASSO_OK)
 			return;
 		if (error != told)
-			say(passo_error_name(error));
+			say_error(error);
 		told = error;
 		pause(SEARCH_MILLISECONDS, true);
 	}
