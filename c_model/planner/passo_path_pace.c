@@ -230,24 +230,29 @@ static struct passo_path_aim calm_below(
 	return made;
 }
 
-/* A ramp down, to a speed at which the known lines last: for lines so short that they do not at this one. */
-static struct passo_path_aim brake(
-    const struct passo_path_planner *path, uint64_t least, enum passo_path_need need)
+/* A ramp down, to a speed at which the known lines last: where there is no room for more of them, and they
+ * are so short that they do not at this one. */
+static struct passo_path_aim brake(const struct passo_path_planner *path, uint64_t least)
 {
 	const uint64_t from = path->velocity;
+	const struct passo_path_item *item = passo_path_item(path, path->planned);
+	uint64_t slope = item->slope;
 
-	for (uint64_t to = from - from / 4; to > from / 16; to -= from / 8) {
-		struct ahead ahead = look_ahead(path, 0, need);
+	for (unsigned half = 0; half < passo_path_halves(item); half++)
+		slope = passo_path_smaller(
+		    slope, passo_path_slope(item, half, false, passo_path_square_of(from), 0));
+	for (uint64_t to = from - from / 4; to > from / 8; to -= from / 4) {
 		const uint64_t needed =
-		    passo_mul_div(from - to, UINT64_C(1) << (17u - path->machine.tick_log2), ahead.slope);
+		    passo_mul_div(from - to, UINT64_C(1) << (17u - path->machine.tick_log2), slope);
 		const uint64_t ticks = passo_path_larger(least, needed) + 1;
 		const uint64_t way = passo_path_length_in(path, from + to, ticks);
 		const uint64_t next = passo_path_pace_need(path, ticks, 2);
-
-		ahead = look_ahead(path, way + passo_path_length_in(path, 2 * to, next), need);
+		const struct ahead ahead =
+		    look_ahead(path, way + passo_path_length_in(path, 2 * to, next), PASSO_PATH_FULL);
 		const struct passo_path_aim aim = aim_at(path, to, way, ahead.slope);
-		if (!ahead.unknown && ahead.rest == 0 && aim.square <= ahead.square && is_below(path, &aim)
-		    && from - to <= passo_path_change(path, ahead.slope, ticks))
+
+		if (ahead.rest == 0 && aim.square <= ahead.square && is_below(path, &aim)
+		    && from - to <= passo_path_change(path, passo_path_smaller(slope, ahead.slope), ticks))
 			return aim;
 	}
 	return (struct passo_path_aim){.length = 0};
@@ -282,8 +287,8 @@ struct passo_path_aim passo_path_at_pace(
 		made.length = 0;
 		return made;
 	}
-	if (made.length == 0)
-		made = brake(path, least, need);
+	if (made.length == 0 && need == PASSO_PATH_FULL)
+		made = brake(path, least);
 	if (made.length == 0)
 		return *aim;
 	made.open = false;
