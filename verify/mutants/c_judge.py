@@ -19,7 +19,8 @@ from verify.mutants.fates import Fate, Fates, hash_of
 
 # Those that do not take long.
 TESTS = (
-    *("test_math", "test_moves", "test_plan", "test_plan_course", "test_plan_forms", "test_plan_jerk"),
+    *("test_math", "test_moves", "test_plan", "test_plan_course", "test_plan_edges", "test_plan_forms"),
+    "test_plan_jerk",
     *("test_plan_methods", "test_plan_shape", "test_plan_sigmoid", "test_plan_straight", "test_plan_turn"),
     *("test_plan_user", "test_path", "test_path_changes", "test_path_lines", "test_path_relations"),
     *("test_gcode", "test_gcode_arcs", "test_gcode_cycles", "test_gcode_edges"),
