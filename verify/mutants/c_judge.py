@@ -25,7 +25,7 @@ TESTS = (
     *("test_plan_user", "test_path", "test_path_changes", "test_path_lines", "test_path_relations"),
     *("test_gcode", "test_gcode_arcs", "test_gcode_cycles", "test_gcode_edges"),
     *("test_gcode_jog", "test_gcode_words"),
-    *("test_driver", "test_driver_dma", "test_driver_edges", "test_driver_encoder"),
+    *("test_driver", "test_driver_after", "test_driver_dma", "test_driver_edges", "test_driver_encoder"),
     *("test_driver_home", "test_driver_inputs", "test_driver_outputs", "test_driver_positions"),
     *("test_driver_together", "test_driver_units", "test_driver_goto", "test_driver_homed"),
     *("test_driver_sessions", "test_driver_noise", "test_endings"),

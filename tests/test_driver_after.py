@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: MIT
+"""What the driver takes on while or after something else: nothing of that is left."""
+
+import pytest
+from passo.driver import Driver
+
+from tests.helpers.driver_wire import CLOCK_HZ, Q32, Wire, by_speed, error_of, finish, open_driver, struct
+from tests.test_driver_sessions import PARAMETERS, again, moves
+
+MS = CLOCK_HZ // 1000
+
+
+def jog(**fields: int) -> object:
+    return struct("jog", speed=20_000 * Q32, acceleration=2_000_000 * Q32, **fields)
+
+
+@pytest.fixture
+def driver(wire: Wire) -> Driver:
+    """With soft stops of 2 ms."""
+    made = open_driver(wire)
+    made.call("configure_motion", 2 * MS, 2 * MS, 0)
+    return made
+
+
+@pytest.mark.parametrize("steps", [0, 20_000])
+def test_nothing_is_queued_behind_a_jog(driver: Driver, steps: int) -> None:
+    """Endless or not: a move, a second jog, a position or a zero must wait for its end."""
+    driver.call("jog", jog(steps=steps))
+    driver.engine.run(MS)
+    for call, *arguments in (
+        ("move_by_speed", by_speed([5, 0, 0, 0])),
+        ("jog", jog(steps=7)),
+        ("set_position", 0, 3),
+        ("zero",),
+    ):
+        assert error_of(driver, call, *arguments) == "MOVING", call
+    driver.call("jog_cancel")
+    finish(driver)
+    driver.call("move_by_speed", by_speed([5, 0, 0, 0]))
+
+
+def test_nothing_but_moves_is_taken_during_a_move(driver: Driver) -> None:
+    """They queue; the positions stay what they are."""
+    driver.call("move_by_speed", by_speed([9000, 0, 0, 0]))
+    driver.call("move_by_speed", by_speed([500, 0, 0, 0]))
+    for call, *arguments in (("jog", jog(steps=7)), ("zero",), ("set_position", 0, 3)):
+        assert error_of(driver, call, *arguments) == "MOVING", call
+    finish(driver)
+    assert driver.positions()[0] == 9500
+
+
+def test_a_jog_whose_end_nobody_has_seen(driver: Driver, wire: Wire) -> None:
+    """The next move sees it, and is exact."""
+    driver.call("jog", jog(steps=700))
+    wire.run(CLOCK_HZ // 5)
+    driver.call("move_by_speed", by_speed([300, 0, 0, 0]))
+    finish(driver)
+    assert not driver.is_moving and driver.fault == "OK"
+    assert driver.positions() == wire.counted()[1] == [1000, 0, 0, 0]
+
+
+def test_a_session_after_an_override_is_at_full_speed() -> None:
+    """And its lines have the levels that the outputs have."""
+    first = open_driver(Wire(PARAMETERS))
+    first.call("configure_motion", 2 * MS, 2 * MS, 0)
+    first.call("configure_probe", False)
+    first.call("set_levels", 5)
+    first.call("override", 25)
+    first.engine.run(10 * MS)
+    second = again(first)
+    assert second.snapshot().rate == 1 << 16
+    moves(second)
+    state = struct("outputs_state")
+    second.call("read_outputs", state)
+    assert state.levels == 5
