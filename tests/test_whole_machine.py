@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The machine of a file as a whole: sender, firmware, board, wires, drives and switches."""
 
+import os
 import re
 from pathlib import Path
 
@@ -44,6 +45,17 @@ def test_a_part_on_the_whole_machine(tmp_path: Path) -> None:
     """It homes and ends within half a step; no drive sees a timing that its data sheet does not allow."""
     seen = run(WholeMachine(small(tmp_path), tmp_path / "made"), PART)
     assert all(len(driven.seconds) > 50 and driven.turns > 2 for driven in seen)
+
+
+WHOLE = "PASSO_WHOLE"
+
+
+@pytest.mark.skipif(WHOLE not in os.environ, reason="make whole-machine")
+def test_four_motors(tmp_path: Path) -> None:
+    """The example and its whole part, by the image of the large chip: a quarter of an hour."""
+    machines = paths.examples / "machines"
+    lines = (machines / "motors.nc").read_text().splitlines()
+    assert len(run(WholeMachine(machines / "motors.toml", tmp_path / "made"), lines)) == 4
 
 
 GOOD = {

@@ -21,7 +21,7 @@ from passo.engine import Engine, model_engine
 from passo.gcode import AXIS_LETTERS, NANOMETERS
 from passo.grbl_setup import attach, core_for
 from passo.machine_file import MachineFile, read_machine
-from passo.make_command import AXIS_PORTS, OUTPUTS, SWITCH_PORTS, at_home, definitions
+from passo.make_command import AXIS_PORTS, IMAGE, OUTPUTS, SWITCH_PORTS, at_home, definitions
 from passo.part import read_part
 from passo.pins import INPUTS, Pin
 from passo.pins import OUTPUTS as CORE_OUTPUTS
@@ -145,7 +145,8 @@ class WholeMachine:
     def elf(self) -> Path:
         """The image of this machine."""
         facts = (f"{name}={value}" for name, value in definitions(self.machine).items())
-        return grbl_elf(paths.build / "tests" / f"firmware_{self.path.stem}", *facts)
+        folder = paths.build / "tests" / f"firmware_{self.path.stem}"
+        return grbl_elf(folder, *facts, image=IMAGE[self.machine.chip])
 
     def engine(self) -> Engine:
         """The Verilated board in the machine, as the sheet wires it."""
