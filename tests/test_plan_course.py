@@ -197,7 +197,7 @@ def test_random_changes(c: Any, batch: int) -> None:
             assert motion.seconds <= optimum.seconds * (1 + rounding) + TICKS * tick
             left = steps - motion.steps - one * motion.ramps[0][1]
             assert left <= 2 * tick * speed_of(plan, p.velocity_peak) or p.cruise_ticks == LONGEST_CRUISE
-        elif p.ramp_count == 1:  # at once to rest
+        elif p.ramp_count == 1:  # one ramp to rest
             assert motion.seconds <= fast / acceleration + TICKS * tick
 
 

@@ -130,10 +130,10 @@ struct passo_path_planner {
 	uint64_t deviation, tolerance;      /* UQ32.16 substeps */
 	uint64_t own_tolerance;             /* the same: that of the settings */
 	struct passo_path_merged merged;    /* by how much the last line is off those that it replaces */
-	uint64_t feed;   /* of the last line, as it was given */
-	uint32_t wanted; /* the same, UQ0.32 */
-	bool begins;     /* the path rested before the last line */
-	bool open;       /* the last line may still become a longer one: no ramp relies on it */
+	uint64_t feed;                      /* of the last line, as it was given */
+	uint32_t wanted;                    /* the same, UQ0.32 */
+	bool begins;                        /* the path rested before the last line */
+	bool open; /* the last line may still become a longer one: no ramp relies on it */
 	uint32_t substeps_per_mm;
 	uint32_t dwell; /* ticks before the next line */
 	bool rest;      /* before the next line */

@@ -96,15 +96,15 @@ def corners_of(points: np.ndarray, feed: np.ndarray, off: float) -> np.ndarray:
     kept, first, last = [0], 0, len(points) - 1
     while first < last:
         end = first + 1
-        while end < last and _is_line(points[first : end + 2], off if _is_even(feed[first:end + 1]) else SHORTEST):
+        while end < last and _is_line(points[first : end + 2], _most_off(feed[first : end + 1], off)):
             end += 1
         kept.append(end)
         first = end
     return np.array(kept)
 
 
-def _is_even(values: np.ndarray) -> bool:
-    return bool((values == values[0]).all())
+def _most_off(feed: np.ndarray, off: float) -> float:
+    return off if (feed == feed[0]).all() else SHORTEST
 
 
 def _is_line(points: np.ndarray, off: float) -> bool:
