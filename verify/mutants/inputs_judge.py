@@ -8,12 +8,15 @@ from passo.build import Parameters
 from passo.engine import Engine
 from passo.registers import Cause, TriggerAction, TriggerSource
 
-from tests.test_inputs import KINDS, LATCH, Machine
+from tests.helpers.closed_form import ONE, Line, Ramp
+from tests.helpers.motions import to_line, to_ramp
+from tests.test_inputs import KINDS, LATCH, Machine, arm
 from verify.mutants.engine_judge import Check
 
 MODULES = (
     *("passo_machine", "passo_estop", "passo_watchdog", "passo_inputs", "passo_input", "passo_limits"),
     *("passo_trigger", "passo_positions", "passo_core", "passo_channel", "passo_axis_registers"),
+    "passo_lines",
 )
 LEVELS = ("limit_low", "limit_high", "home", "alarm")
 UNIT = 1 << 16  # clocks of the watchdog
@@ -82,6 +85,31 @@ def check_trigger(machine: Machine) -> None:
     machine.clear()
 
 
+def check_end_endless(machine: Machine) -> None:
+    """The line that repeats is made to its end once the trigger fires; the next one repeats as well."""
+    rng, channel = machine.rng, machine.channel
+    size, other, gap = rng.randint(5, 12), rng.randint(5, 12), rng.randint(8, 14)
+    none = (0,) * (machine.axes - 2)
+    begin = channel.positions()
+    machine.link.write(r.ADDRESS_INPUT_FILTER, 0)
+    arm(machine, TriggerAction.END_ENDLESS)
+    lines = Line(size, (size, 0, *none), endless=True), Line(other, (0, -other, *none), endless=True)
+    channel.push_lines([to_line(line) for line in lines])
+    channel.push_ramps([to_ramp(Ramp(ONE // gap, 0)), to_ramp(Ramp(ONE // gap, 60_000))])
+    channel.start()
+    machine.engine.run(400 + 10 * size * gap + rng.randrange(size * gap))
+    before = [place - first for place, first in zip(channel.positions(), begin, strict=True)]
+    assert before[0] > 5 * size and before[1] == 0, "a line repeats until the trigger fires"
+    machine.set("probe", 1)
+    machine.engine.run((size + 6 * other) * gap + 200)
+    channel.abort()
+    machine.check_position()
+    after = [place - first for place, first in zip(channel.positions(), begin, strict=True)]
+    assert after[0] % size == 0 and 0 <= after[0] - before[0] < size + 1500 // gap, "it ends whole"
+    assert after[1] < -3 * other, "the next one repeats"
+    machine.clear()
+
+
 def check_watchdog(machine: Machine) -> None:
     """Silence stops a motion after its time, and then disables the drives."""
     for axis in range(machine.axes):
@@ -115,7 +143,7 @@ def check(engine: Engine, parameters: Parameters, rng: random.Random) -> None:
         return
     machine = Machine(engine, rng, parameters)
     check_levels(machine)
-    for kind in [*KINDS, check_trigger, check_trigger, check_trigger]:
+    for kind in [*KINDS, check_trigger, check_trigger, check_trigger, check_end_endless]:
         kind(machine)
     check_watchdog(machine)
 
