@@ -37,7 +37,7 @@ Request = tuple[int, int]  # clock, direction: 1 or -1
 
 
 def test_axis(simulator: str) -> None:
-    run(__name__, "passo_axis", simulator=simulator)
+    run(__name__, "passo_axis_top", simulator=simulator)
 
 
 def expected_steps(
@@ -83,9 +83,8 @@ def expected_steps(
 
 
 def set_time(dut: HierarchyObject, name: str, clocks: int) -> None:
-    """Set one of the four times, and whether it is minimal; 0 counts as 1."""
+    """Set one of the four times; 0 counts as 1."""
     getattr(dut, name).value = max(1, clocks)
-    getattr(dut, f"{name.partition('_')[2]}_is_minimal").value = clocks < 2
 
 
 def apply(dut: HierarchyObject, timing: PinTiming) -> None:
@@ -374,8 +373,8 @@ async def a_time_that_is_written_begins_anew(dut: HierarchyObject, high: int) ->
         dut.timing_written.value = 0
         set_time(dut, "step_high", high)
         await clocks.wait(150)
-        # the time begins with the second clock after the write; the pin follows a clock later
-        assert pins.changes == [(now + LATENCY, 1), (now + at + 3 + max(1, high), 0)]
+        # the time begins with the third clock after the write; the pin follows a clock later
+        assert pins.changes == [(now + LATENCY, 1), (now + at + 4 + max(1, high), 0)]
         pins.stop()
 
 

@@ -87,5 +87,11 @@ async def every_write_reaches_its_axis(dut: HierarchyObject) -> None:
             for register, name in WRITABLE.items():
                 meant = level and block == "select_axis" and address == register
                 assert read(getattr(dut, name)) == (1 << axis if meant else 0), place
-        assert (read(dut.upper_is_minimal), read(dut.lower_is_minimal)) == tuple(half < 2 for half in halves)
-        dut.bus_write.value = 0
+            if level:
+                assert (read(dut.timing_place) & 1, read(dut.timing)) == (1, max(1, halves[0]))
+                assert read(dut.timing_is_minimal) == (halves[0] < 2)
+                dut.bus_write.value = 0
+                await clocks.wait(1)
+                step = address == STEP_TIMING
+                assert (read(dut.timing_place), read(dut.timing)) == (2 if step else 0, max(1, halves[1]))
+                assert read(dut.timing_is_minimal) == (halves[1] < 2)

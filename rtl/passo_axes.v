@@ -11,6 +11,7 @@
 module passo_axes #(
   parameter            AXES         = 4,
   parameter            INPUTS       = 0,
+  parameter            BLOCK_RAM    = 1,  // for the timings
   parameter [AXES-1:0] STEP_RESET   = 0,
   parameter [AXES-1:0] DIR_RESET    = 0,
   parameter [AXES-1:0] ENABLE_RESET = 0
@@ -62,8 +63,9 @@ module passo_axes #(
   wire [  AXES-1:0] write_step_timing;
   wire [  AXES-1:0] write_dir_timing;
   wire [  AXES-1:0] write_enable;
-  wire              upper_is_minimal;
-  wire              lower_is_minimal;
+  wire [       1:0] write_place;
+  wire [      15:0] write_timing;
+  wire              write_is_minimal;
   wire [       3:0] lost_read;
   wire              answers_position;
   wire [      31:0] position;
@@ -76,10 +78,9 @@ module passo_axes #(
   genvar axis;
   generate
     for (axis = 0; axis < AXES; axis = axis + 1) begin : g_axis
-      wire [15:0] step_high;
-      wire [15:0] step_low;
-      wire [15:0] dir_setup;
-      wire [15:0] dir_hold;
+      wire        timing_written;
+      wire [ 1:0] timing_place;
+      wire [15:0] timing;
       wire        high_is_minimal;
       wire        low_is_minimal;
       wire        setup_is_minimal;
@@ -113,15 +114,13 @@ module passo_axes #(
         .quiet             (axis_quiet[axis]),
         .clear             (clear),
         .lost              (lost[axis*4+:4]),
-        .step_high         (step_high),
-        .step_low          (step_low),
-        .dir_setup         (dir_setup),
-        .dir_hold          (dir_hold),
+        .timing_place      (timing_place),
+        .timing            (timing),
         .high_is_minimal   (high_is_minimal),
         .low_is_minimal    (low_is_minimal),
         .setup_is_minimal  (setup_is_minimal),
         .hold_is_minimal   (hold_is_minimal),
-        .timing_written    (write_step_timing[axis] | write_dir_timing[axis]),
+        .timing_written    (timing_written),
         .pins_written      (write_pins[axis]),
         .both_edges_next   (bus_data[AXIS_PINS_BOTH_EDGES_LSB]),
         .both_edges        (both_edges),
@@ -135,6 +134,7 @@ module passo_axes #(
       );
 
       passo_axis_settings #(
+        .BLOCK_RAM   (BLOCK_RAM),
         .STEP_RESET  (STEP_RESET[axis]),
         .DIR_RESET   (DIR_RESET[axis]),
         .ENABLE_RESET(ENABLE_RESET[axis])
@@ -146,17 +146,17 @@ module passo_axes #(
         .write_dir_timing  (write_dir_timing[axis]),
         .write_enable      (write_enable[axis]),
         .disable_axis      (disable_axis[axis]),
-        .bus_data          (bus_data),
-        .upper_is_minimal  (upper_is_minimal),
-        .lower_is_minimal  (lower_is_minimal),
+        .bus_data          (bus_data[4:0]),
+        .write_place       (write_place),
+        .write_timing      (write_timing),
+        .write_is_minimal  (write_is_minimal),
+        .timing_written    (timing_written),
+        .timing_place      (timing_place),
+        .timing            (timing),
         .high_is_minimal   (high_is_minimal),
         .low_is_minimal    (low_is_minimal),
         .setup_is_minimal  (setup_is_minimal),
         .hold_is_minimal   (hold_is_minimal),
-        .step_high         (step_high),
-        .step_low          (step_low),
-        .dir_setup         (dir_setup),
-        .dir_hold          (dir_hold),
         .both_edges        (both_edges),
         .step_inverted     (step_inverted),
         .direction_inverted(direction_inverted),
@@ -185,8 +185,9 @@ module passo_axes #(
     .write_dir_timing (write_dir_timing),
     .write_enable     (write_enable),
     .write_inputs     (write_inputs),
-    .upper_is_minimal (upper_is_minimal),
-    .lower_is_minimal (lower_is_minimal),
+    .timing_place     (write_place),
+    .timing           (write_timing),
+    .timing_is_minimal(write_is_minimal),
     .lost             (lost)
   );
 

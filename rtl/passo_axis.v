@@ -10,11 +10,11 @@
 // axis steps every two clocks. Steps that arrive during the pin timing are queued with their direction, up to 4; a
 // step that finds the queue `full` is lost and counted in `lost`, saturating at 15. With an empty queue, DIR follows
 // `direction`, that of the current line. With both_edges every edge of STEP is a step, and each level lasts at least
-// step_high or step_low. `drop` empties the queue; a pulse in progress is finished. No timing is 0. `timing_written`
-// restarts the running timing, as the settings change with it. `pins_written`, only while `quiet`: polarities and mode
-// change with it, the pins two clocks later; the next step waits for step_low, dir_hold and dir_setup, as it does
-// after a reset. A reset leaves STEP and DIR as they are and finishes a pulse in progress. `quiet`: no step is queued
-// or in progress, no timing runs.
+// step_high or step_low. `drop` empties the queue; a pulse in progress is finished. No timing is 0. The timings change
+// in the clock after `timing_written`, when the running one restarts. `pins_written`, only while `quiet`: polarities
+// and mode change with it, the pins two clocks later; the next step waits for step_low, dir_hold and dir_setup, as it
+// does after a reset. A reset leaves STEP and DIR as they are and finishes a pulse in progress. `quiet`: no step is
+// queued or in progress, no timing runs.
 // Latency: step_request to STEP 3 clocks, `direction` to DIR 3 clocks. `step_made`, with `step_direction`, is high in
 // the clock before the active edge leaves the pin. `closed_low` blocks negative steps and `closed_high` positive ones:
 // they wait until they are dropped. Latency: `closed_low` to the last STEP edge in that direction 2 clocks.
@@ -43,10 +43,8 @@ module passo_axis #(
   input  wire        clear,               // clears `lost`
   output reg  [ 3:0] lost,
   // settings
-  input  wire [15:0] step_high,
-  input  wire [15:0] step_low,
-  input  wire [15:0] dir_setup,
-  input  wire [15:0] dir_hold,
+  output wire [ 1:0] timing_place,        // of the timing that runs in the next clock
+  input  wire [15:0] timing,              // that runs; not used in the clock after timing_written
   input  wire        high_is_minimal,     // step_high is 1
   input  wire        low_is_minimal,
   input  wire        setup_is_minimal,
@@ -82,13 +80,25 @@ module passo_axis #(
   reg  [15:0] timer;
   reg         level_done;
   reg         dir_done;
-  // Kept: one bit of the mux and the comparison fits one LUT.
+  // Kept: three LUTs from the timing, which comes late, to either. `ends` in halves.
   (* keep *)
-  wire [15:0] level_equal;
+  wire [ 7:0] differs;
   (* keep *)
-  wire [15:0] dir_equal;
-  assign level_equal = timer ^ ~(step ? step_high : step_low);
-  assign dir_equal   = timer ^ ~(setup ? dir_setup : dir_hold);
+  wire [ 1:0] ends;
+  (* keep *)
+  wire level_runs, next_level_is_minimal, dir_runs, next_dir_is_minimal;
+  assign ends                  = {differs[7:4] == 4'd0, differs[3:0] == 4'd0};
+  assign level_runs            = (high | low) & ~level_done;
+  assign next_level_is_minimal = step ? low_is_minimal : high_is_minimal;
+  assign dir_runs              = (setup | hold) & ~dir_done;
+  assign next_dir_is_minimal   = low ? hold_is_minimal : setup_is_minimal;
+
+  genvar pair;
+  generate
+    for (pair = 0; pair < 8; pair = pair + 1) begin : g_differs
+      assign differs[pair] = timer[pair*2+:2] != timing[pair*2+:2];
+    end
+  endgenerate
 
   // Waiting steps, as directions, oldest in bit 0. Free places hold the latest direction.
   reg  [3:0] waiting;
@@ -114,7 +124,7 @@ module passo_axis #(
   wire edge_begins = step_begins | falls;
 
   // a timing begins, or none runs
-  wire restart = timing_written | settle;
+  reg  restart;
   (* keep *)
   wire timing_over;
   assign timing_over = setup | idle ? dir_done | (idle & ~hold) : level_done;
@@ -132,6 +142,11 @@ module passo_axis #(
   assign down_behind = waits[1] ? waiting[1] : step_request & direction;
   assign down_here   = waits[0] ? waiting[0] : step_request & direction;
 
+  wire high_next = (high & ~falls) | (step_begins & ~both_edges);
+  wire low_next = (low & ~low_over) | falls | (step_begins & both_edges) | settle;
+  wire setup_next = (setup & ~dir_done) | setup_begins;
+  assign timing_place = {high_next | low_next, high_next | low_next ? step ^ edge_begins : setup_next};
+
   integer i;
   always @(posedge clk) begin
     for (i = 0; i < 4; i = i + 1) begin
@@ -142,24 +157,23 @@ module passo_axis #(
     waits_down <= (step_begins ? down_behind : down_here) & ~closed_low;
     if (step_request && full && lost != 4'hF) lost <= lost + 4'd1;
 
-    timer <= !begins ? timer + 16'd1 : restart ? 16'd1 : 16'd2;
-    if ((high || low) && !level_done) level_done <= &level_equal;
-    else level_done <= step ? low_is_minimal : high_is_minimal;
-    if ((setup || hold) && !dir_done) dir_done <= &dir_equal;
-    else dir_done <= low ? hold_is_minimal : setup_is_minimal;
+    timer      <= !begins ? timer + 16'd1 : restart ? 16'd1 : 16'd2;
+    level_done <= level_runs ? &ends : next_level_is_minimal;
+    dir_done   <= dir_runs ? &ends : next_dir_is_minimal;
     if (restart) begin
       level_done <= 1'b0;
       dir_done   <= 1'b0;
     end
 
-    high  <= (high & ~falls) | (step_begins & ~both_edges);
-    low   <= (low & ~low_over) | falls | (step_begins & both_edges) | settle;
-    setup <= (setup & ~dir_done) | setup_begins;
+    high  <= high_next;
+    low   <= low_next;
+    setup <= setup_next;
     idle  <= free & ~step_begins & ~setup_begins & ~settle;
     hold  <= ((hold & ~dir_done) | low_over) & ~step_begins & ~setup_begins;
     step  <= step ^ edge_begins;
     dir   <= dir ^ (setup_begins & wrong);
 
+    restart   <= timing_written | pins_written;
     settle    <= pins_written;
     unsettled <= settle | (unsettled & ~setup_begins);
     quiet     <= idle & ~hold & ~needs_setup & ~waits[0] & ~step_request & ~pins_written & ~settle;
@@ -184,6 +198,7 @@ module passo_axis #(
       idle       <= 1'b0;
       hold       <= 1'b0;
       settle     <= 1'b0;
+      restart    <= 1'b1;  // `timing` is not that of this state yet
       unsettled  <= 1'b1;
       quiet      <= 1'b0;
       timer      <= 16'd1;

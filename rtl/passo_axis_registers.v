@@ -3,6 +3,8 @@
 //
 // Promise: `read_data` is the addressed register one clock after `bus_read`, for one clock, else 0; `answers_position`:
 // it is a position, which this module does not have. `select_axis` has the bit of the axis whose block is addressed.
+// `timing` and its place (3: step_high, 2: step_low, 1: dir_setup, 0: dir_hold) are the upper half of a timing word
+// with its strobe, and the lower half in the next clock.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -28,8 +30,9 @@ module passo_axis_registers #(
   output reg  [  AXES-1:0] write_dir_timing,
   output reg  [  AXES-1:0] write_enable,
   output reg  [  AXES-1:0] write_inputs,
-  output reg               upper_is_minimal,   // half of bus_data is 0 or 1: a time of one clock
-  output reg               lower_is_minimal,
+  output reg  [       1:0] timing_place,
+  output wire [      15:0] timing,             // 0 counts as 1
+  output wire              timing_is_minimal,  // it is 1
   input  wire [AXES*4-1:0] lost
 );
 
@@ -57,9 +60,15 @@ module passo_axis_registers #(
     for (i = 0; i < AXES; i = i + 1) selected_lost = selected_lost | (lost[i*4+:4] & {4{select_axis[i]}});
   end
 
+  // bus_data stands in the clock of bus_write and the one after
+  reg [15:0] half;
+  assign timing_is_minimal = half[15:1] == 15'd0;
+  assign timing            = {half[15:1], half[0] | timing_is_minimal};
+
   always @(posedge clk) begin
-    upper_is_minimal <= (bus_data[31:16] & 16'hFFFE) == 16'd0;
-    lower_is_minimal <= (bus_data[15:0] & 16'hFFFE) == 16'd0;
+    half            <= bus_write ? bus_data[31:16] : bus_data[15:0];
+    timing_place[0] <= bus_write;
+    if (bus_write) timing_place[1] <= bus_address == AXIS_STEP_TIMING;
     read_data        <= bus_read && bus_address == AXIS_LOST_STEPS ? selected_lost : 4'd0;
     answers_position <= bus_read & select_position;
     if (rst) begin

@@ -406,6 +406,7 @@ module passo_channel #(
   passo_axes #(
     .AXES        (AXES),
     .INPUTS      (INPUTS),
+    .BLOCK_RAM   (STEPS_REGISTER == 0),
     .STEP_RESET  (STEP_RESET),
     .DIR_RESET   (DIR_RESET),
     .ENABLE_RESET(ENABLE_RESET)

@@ -56,7 +56,11 @@ module passo_line #(
   (* keep *)
   wire [14:0] pair_equal;
   reg  [ 3:0] equal;
-  wire        on_last = &equal;
+  // Kept: two LUTs to `take`, which many registers wait for.
+  (* keep *)
+  wire on_last, may_take, takes;
+  assign on_last  = &equal;
+  assign may_take = goes_on & next_valid;
 
   genvar i;
   generate
@@ -68,7 +72,8 @@ module passo_line #(
   assign substep_taken = substep & active;
   wire line_done = substep_taken & on_last;
 
-  assign take        = start | (substep & on_last & goes_on & next_valid);
+  assign takes       = start | (substep & on_last & may_take);
+  assign take        = takes;
   assign line_begins = take | (substep & on_last & repeats);
 
   assign line_addend = load_start ? {2'b11, ~last_substep[29:1]} : {1'b1, ~last_substep};
@@ -89,7 +94,7 @@ module passo_line #(
     if (load_start_q) directions <= current_directions;
 
     underrun <= substep & on_last & goes_on & ~next_valid;
-    if (line_done && !repeats && !(goes_on && next_valid)) active <= 1'b0;
+    if (line_done && !repeats && !may_take) active <= 1'b0;
     if (line_done && last) ended <= 1'b1;
     if (start) begin
       active <= 1'b1;

@@ -3,7 +3,7 @@
 //
 //   every enabled clock:  phase += velocity;  carry out = substep         phase = 1/4 on `restart`
 //
-// The 48-bit adder is split into two halves of 24 bits, the upper one clock behind the lower, and so is the velocity.
+// With velocity <= 1/2 there is a carry exactly when the highest bit of the phase falls. The 48-bit adder is split into two halves of 24 bits, the upper one clock behind the lower, and so is the velocity.
 // Promise: `substep` comes 2 clocks after its `advance`; with velocity <= 1/2 never on two clocks in a row.
 // On `begin_profile` and `tick` velocity_next takes effect in the next clock (its upper half is read one clock
 // later), or 0 if `rest`. While `drain` is high drain_velocity is used, from the second clock on. At rest, `stop` or
@@ -25,7 +25,7 @@ module passo_path (
   input  wire        drain,
   input  wire [31:0] drain_velocity,  // UQ0.32
   output wire [31:0] velocity,        // UQ0.32
-  output reg         substep
+  output wire        substep
 );
 
   localparam [23:0] QUARTER = 24'h400000;
@@ -38,12 +38,11 @@ module passo_path (
   reg        phase_low_carry;
   reg [23:0] phase_high;
   reg        advance_q;
-  reg        pauses;  // ~advance_q
+  reg        was_high;  // the highest bit of the phase before the addition; 0 if there was none
 
   wire [24:0] phase_low_sum = {1'b0, phase_low} + {1'b0, velocity_low};
-  // restart is low whenever the sum is used; a non-constant operand keeps the carry in the chain
-  wire [24:0] phase_high_sum = {restart, phase_high} + {1'b0, velocity_high} + {24'd0, phase_low_carry};
 
+  assign substep  = was_high & ~phase_high[23];
   assign velocity = {velocity_high, velocity_low[23:16]};
 
   wire take = begin_profile | tick | refresh;
@@ -57,16 +56,14 @@ module passo_path (
     if (take_q) velocity_high <= velocity_wanted[47:24];
     if (advance) phase_low <= phase_low_sum[23:0];
     phase_low_carry <= advance & phase_low_sum[24];
-    if (advance_q) phase_high <= phase_high_sum[23:0];
-    substep <= pauses ? 1'b0 : phase_high_sum[24];
-    pauses  <= ~advance;
+    if (advance_q) phase_high <= phase_high + velocity_high + {23'd0, phase_low_carry};
+    was_high <= advance_q & phase_high[23];
     if (rst || restart) begin
       advance_q       <= 1'b0;
       phase_low       <= 24'd0;
       phase_low_carry <= 1'b0;
       phase_high      <= QUARTER;
-      substep         <= 1'b0;
-      pauses          <= 1'b1;
+      was_high        <= 1'b0;
     end
   end
 

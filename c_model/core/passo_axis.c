@@ -34,7 +34,7 @@ void passo_axis_restart(struct passo_axis *axis, const struct passo_axis *before
 	*axis = (struct passo_axis){
 	    .settings = *settings,
 	    .state = PASSO_AXIS_PULSE,
-	    .timing_changed = true,
+	    .restarts = true,
 	    .unsettled = true,
 	    .step = before->step_pin != settings->step_inverted,
 	    .dir = before->dir_pin != settings->direction_inverted,
@@ -43,6 +43,7 @@ void passo_axis_restart(struct passo_axis *axis, const struct passo_axis *before
 	    .enable_pin = settings->enable != settings->enable_inverted,
 	};
 	axis->settings.enable = false;
+	axis->settings.half_written = false;
 }
 
 void passo_axis_settings_write(struct passo_axis_settings *settings, uint8_t address, uint32_t data)
@@ -87,6 +88,11 @@ static uint16_t time_of(const struct passo_axis *axis)
 	else
 		time = axis->state == PASSO_AXIS_SETUP ? settings->dir_setup : settings->dir_hold;
 	return time == 0u ? 1u : time;
+}
+
+static bool is_over(const struct passo_axis *axis)
+{
+	return axis->state != PASSO_AXIS_READY && axis->timer == time_of(axis);
 }
 
 static bool place_is(uint8_t places, unsigned place)
@@ -134,7 +140,7 @@ static void clock_pins(struct passo_axis *axis, bool step_begins)
 void passo_axis_clock(struct passo_axis *axis, const struct passo_axis_wires *wires)
 {
 	const enum passo_axis_state state = axis->state;
-	const bool over = !axis->timing_changed && axis->timer == time_of(axis); /* counts from 1 */
+	const bool over = axis->over;
 	const bool right = place_is(axis->waiting, 0) == axis->dir;
 	const bool settle = axis->settle;
 	const bool level_done = state == PASSO_AXIS_PULSE && over;
@@ -155,10 +161,10 @@ void passo_axis_clock(struct passo_axis *axis, const struct passo_axis_wires *wi
 	clock_queue(axis, step_begins, wires);
 
 	axis->closed = wires->closed;
-	axis->timer++;
-	if (step_begins || setup_begins || level_done || axis->timing_changed || settle)
-		axis->timer = 1;
-	axis->timing_changed = wires->timing_written || settle;
+	axis->timer = step_begins || setup_begins || level_done ? 1u : (uint16_t)(axis->timer + 1u);
+	if (axis->restarts)
+		axis->timer = 0;
+	axis->restarts = wires->timing_written || wires->pins_written;
 	axis->settle = wires->pins_written;
 	axis->unsettled = settle || (axis->unsettled && !setup_begins);
 	if (level_done && !falls)
@@ -173,6 +179,7 @@ void passo_axis_clock(struct passo_axis *axis, const struct passo_axis_wires *wi
 		axis->step = false;
 	axis->step = axis->step != (step_begins || falls);
 	axis->dir = axis->dir != (setup_begins && !right);
+	axis->over = is_over(axis);
 }
 
 uint32_t passo_axis_quiet(const struct passo_axis *axis, bool line_direction)
@@ -182,7 +189,7 @@ uint32_t passo_axis_quiet(const struct passo_axis *axis, bool line_direction)
 	const bool settled = axis->step_pin == (axis->step != settings->step_inverted)
 	                  && axis->dir_pin == (axis->dir != settings->direction_inverted)
 	                  && axis->enable_pin == (settings->enable != settings->enable_inverted)
-	                  && !axis->step_made && !axis->overrun && !axis->timing_changed && !axis->settle
+	                  && !axis->step_made && !axis->overrun && !axis->restarts
 	                  && (axis->waiting & free_places) == (line_direction ? free_places : 0u);
 	const bool waits = place_is(axis->waits, 0);
 	const bool right = place_is(axis->waiting, 0) == axis->dir && !axis->unsettled;
@@ -203,4 +210,5 @@ void passo_axis_skip(struct passo_axis *axis, uint64_t clocks)
 {
 	/* in READY the timer keeps counting without effect */
 	axis->timer = (uint16_t)(axis->timer + clocks);
+	axis->over = is_over(axis);
 }

@@ -190,13 +190,15 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 		    .drop = wires.drop,
 		    .zero = registers.command_zero,
 		    .clear = registers.command_clear,
-		    .timing_written = write_timing && written_axis == i,
+		    .timing_written =
+			(write_timing && written_axis == i) || channel->axis[i].settings.half_written,
 		    .pins_written = write_pins && written_axis == i,
 		    .both_edges_next = (bus->data >> PASSO_AXIS_PINS_BOTH_EDGES_LSB & 1u) != 0u,
 		    .closed = {.low = (channel->inputs.limits.closed_low >> i & 1) != 0,
 			.high = (channel->inputs.limits.closed_high >> i & 1) != 0},
 		};
 		passo_axis_clock(&channel->axis[i], &axis_wires);
+		channel->axis[i].settings.half_written = write_timing && written_axis == i;
 		passo_dda_clock(&channel->dda[i], &channel->line, &channel->line_queue, i);
 	}
 	if (channel->writes_axis)

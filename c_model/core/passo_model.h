@@ -241,6 +241,7 @@ enum passo_axis_state { PASSO_AXIS_READY, PASSO_AXIS_PULSE, PASSO_AXIS_HOLD, PAS
 
 struct passo_axis_settings {
 	uint16_t step_high, step_low, dir_setup, dir_hold; /* clocks */
+	bool half_written; /* of a timing; the other half is written in this clock */
 	bool enable, step_inverted, direction_inverted, enable_inverted, both_edges;
 	uint8_t inputs; /* register INPUTS */
 };
@@ -256,10 +257,11 @@ struct passo_axis {
 	uint16_t timer;
 	uint8_t waiting, waits; /* queue: direction, and occupied; one bit per entry */
 	bool step, dir;
-	bool timing_changed; /* the timing was written in the previous clock */
-	bool settle;         /* PINS was written in the previous clock */
-	bool unsettled;      /* no DIR setup time has elapsed since */
-	bool quiet;          /* of the previous clock */
+	bool over;      /* the time of the state ends with this clock */
+	bool restarts;  /* the previous clock wrote a timing or PINS, or was a reset */
+	bool settle;    /* PINS was written in the previous clock */
+	bool unsettled; /* no DIR setup time has elapsed since */
+	bool quiet;     /* of the previous clock */
 	bool step_made;
 	bool overrun;
 	struct passo_closed closed; /* in the previous clock */

@@ -23,21 +23,30 @@ always @(posedge clk) axis_open : assume (!closed_low && !closed_high);
 
 // --- Assumptions: a reset at the beginning and at any time. Polarities and mode change one clock after
 // `pins_written`, which comes only while `quiet`, with no step request and no change of direction around it. With
-// WRITTEN the timings change at any time, one clock after `timing_written`; else they are constant.
+// WRITTEN the timings change at any time, one clock after `timing_written`; else they are constant. The memory has the
+// right one, unless the timings may have changed with this clock.
+(* anyseq *) reg [15:0] step_high;
+(* anyseq *) reg [15:0] step_low;
+(* anyseq *) reg [15:0] dir_setup;
+(* anyseq *) reg [15:0] dir_hold;
 reg f_started = 1'b0;
 reg [2:0] f_pins = 3'b000;  // pins_written one, two and three clocks ago
 reg [2:0] f_reset = 3'b000;
-reg [2:0] f_restarted = 3'b000;  // likewise: timing written, pins changed, or reset
+reg [2:0] f_restarted = 3'b000;  // likewise: the running time begins again, or reset
+reg f_restart = 1'b0;
 reg f_timing_written = 1'b0;
+reg [1:0] f_timing_place;
 reg f_mode;  // as written
-wire f_disturbed = timing_written | pins_written | (f_restarted[1:0] != 2'b00) | (f_pins[1:0] != 2'b00);
+wire f_disturbed = timing_written | pins_written | f_restart | (f_restarted[1:0] != 2'b00) | (f_pins[1:0] != 2'b00);
 always @(posedge clk) begin
   f_started <= 1'b1;
   if (!f_started) axis_reset : assume (rst);
   f_pins           <= rst ? 3'b000 : {f_pins[1:0], pins_written};
   f_reset          <= {f_reset[1:0], rst};
-  f_restarted      <= rst ? 3'b001 : {f_restarted[1:0], timing_written | f_pins[0]};
-  f_timing_written <= timing_written & ~rst;
+  f_restarted      <= rst ? 3'b001 : {f_restarted[1:0], f_restart};
+  f_restart        <= timing_written | pins_written | rst;
+  f_timing_written <= timing_written;
+  f_timing_place   <= timing_place;
   f_mode           <= both_edges_next;
   if (f_started) begin
     if (!f_timing_written)
@@ -55,6 +64,9 @@ always @(posedge clk) begin
   axis_no_timing_written : assume (!timing_written);
 `endif
   axis_timings_not_0 : assume (step_high != 16'd0 && step_low != 16'd0 && dir_setup != 16'd0 && dir_hold != 16'd0);
+  if (f_started && !f_timing_written)
+    axis_timing_is_there :
+    assume (timing == (f_timing_place[1] ? (f_timing_place[0] ? step_high : step_low) : (f_timing_place[0] ? dir_setup : dir_hold)));
   axis_minimal_step_times : assume (high_is_minimal == (step_high == 16'd1) && low_is_minimal == (step_low == 16'd1));
   axis_minimal_dir_times : assume (setup_is_minimal == (dir_setup == 16'd1) && hold_is_minimal == (dir_hold == 16'd1));
 `ifdef NARROW
@@ -67,6 +79,17 @@ wire [17:0] f_high = {2'd0, step_high};
 wire [17:0] f_low = {2'd0, step_low};
 wire [17:0] f_setup = {2'd0, dir_setup};
 wire [17:0] f_hold = {2'd0, dir_hold};
+// of the clock before: what the state was decided with
+reg [17:0] f_high_q = 18'd1;
+reg [17:0] f_low_q = 18'd1;
+reg [17:0] f_setup_q = 18'd1;
+reg [17:0] f_hold_q = 18'd1;
+always @(posedge clk) begin
+  f_high_q  <= f_high;
+  f_low_q   <= f_low;
+  f_setup_q <= f_setup;
+  f_hold_q  <= f_hold;
+end
 
 // --- The pins, interpreted with the polarities of the clock before, which produced them. A change of polarity or
 // mode counts as a change of both pins.
@@ -121,7 +144,7 @@ always @(posedge clk)
   if (f_started) begin
     if (!f_both && f_pin_edge && !f_step && !f_changed)
       high_exact : assert (f_was_reset ? f_step_lasted_q >= f_high : f_step_lasted_q == f_high);
-    if (!f_both && f_step) high_ends : assert (f_was_reset ? f_since_reset <= f_high + 18'd1 : f_step_lasted <= f_high);
+    if (!f_both && f_step) high_ends : assert (f_was_reset ? f_since_reset <= f_high + 18'd2 : f_step_lasted <= f_high);
     if (!f_both && f_active) low_kept : assert (f_step_lasted_q >= f_low);
     if (!f_both && f_pin_dir_change) dir_changes_at_low : assert (!f_step && (!f_step_q || f_changed));
     if (f_both && f_active) both_levels_kept : assert (f_step_lasted_q >= f_level_q);
@@ -129,13 +152,13 @@ always @(posedge clk)
     if (f_pin_dir_change) hold_kept : assert ((!f_edge || f_changed) && f_step_lasted_q >= f_level_q + f_hold);
   end
 `else
-// --- The timings as they run at the pins, and which are over after this clock. A running one restarts three clocks
-// after a write (the pins are two clocks late), with the new value; the values of the clock before count, as the next
+// --- The timings as they run at the pins, and which are over after this clock. A running one restarts four clocks
+// after a write (the pins are two clocks late), with the new value; the values of two clocks before count, as the next
 // pin change was decided then. After a change of polarity or mode they start two clocks later.
-reg [17:0] f_high_q;
-reg [17:0] f_low_q;
-reg [17:0] f_setup_q;
-reg [17:0] f_hold_q;
+reg [17:0] f_high_qq;
+reg [17:0] f_low_qq;
+reg [17:0] f_setup_qq;
+reg [17:0] f_hold_qq;
 reg [17:0] f_level_run_q;
 reg [17:0] f_hold_run_q;  // from the end of the level on
 reg [17:0] f_setup_run_q;
@@ -147,17 +170,17 @@ wire f_may_end = ~f_restarted[1] & ~f_changed & ~f_reset[0];
 wire f_level_begins = f_edge | f_reset[0];
 wire f_setup_begins = f_dir_change | f_reset[0];
 wire [17:0] f_level_run = f_level_begins || (f_anew && !f_level_over_q) ? 18'd1 : f_level_run_q + 18'd1;
-wire f_level_over = (f_level_over_q & ~f_level_begins) | (f_level_run >= (f_step ? f_high_q : f_low_q) && f_may_end);
+wire f_level_over = (f_level_over_q & ~f_level_begins) | (f_level_run >= (f_step ? f_high_qq : f_low_qq) && f_may_end);
 wire f_hold_runs = f_level_over_q & ~f_level_begins;
 wire [17:0] f_hold_run = !f_hold_runs ? 18'd0 : f_anew && !f_hold_over_q ? 18'd1 : f_hold_run_q + 18'd1;
-wire f_hold_over = f_hold_runs & (f_hold_over_q | (f_hold_run >= f_hold_q && f_may_end));
+wire f_hold_over = f_hold_runs & (f_hold_over_q | (f_hold_run >= f_hold_qq && f_may_end));
 wire [17:0] f_setup_run = f_setup_begins || (f_anew && !f_setup_over_q) ? 18'd1 : f_setup_run_q + 18'd1;
-wire f_setup_over = (f_setup_over_q & ~f_setup_begins) | (f_setup_run >= f_setup_q && f_may_end);
+wire f_setup_over = (f_setup_over_q & ~f_setup_begins) | (f_setup_run >= f_setup_qq && f_may_end);
 always @(posedge clk) begin
-  f_high_q       <= f_high;
-  f_low_q        <= f_low;
-  f_setup_q      <= f_setup;
-  f_hold_q       <= f_hold;
+  f_high_qq      <= f_high_q;
+  f_low_qq       <= f_low_q;
+  f_setup_qq     <= f_setup_q;
+  f_hold_qq      <= f_hold_q;
   // a timing that is over stays over: its counter may stop
   f_level_run_q  <= f_level_over ? 18'd0 : f_level_run;
   f_hold_run_q   <= f_hold_over ? 18'd0 : f_hold_run;
@@ -258,7 +281,7 @@ end
 // --- Invariants, for the induction
 wire [15:0] f_elapsed = timer - 16'd1;  // clocks of the state, this one included
 wire [17:0] f_timer = {2'd0, f_elapsed};
-wire [17:0] f_level = step ? f_high : f_low;
+wire [17:0] f_level = step ? f_high_q : f_low_q;
 wire f_step_shown = f_step == step;
 wire f_dir_shown = f_dir == dir;
 wire f_is_pulse = high | low;
@@ -269,7 +292,7 @@ wire f_dir_right = waiting[0] == dir && !unsettled;
 wire f_clean = ~f_reset[0] & ~f_reset[1];
 wire [2:0] f_count = {2'd0, waits[0]} + {2'd0, waits[1]} + {2'd0, waits[2]} + {2'd0, waits[3]};
 // clocks until the next active edge, or until DIR is right
-wire [17:0] f_time = f_is_hold ? f_hold : f_is_setup ? f_setup : f_level;
+wire [17:0] f_time = f_is_hold ? f_hold_q : f_is_setup ? f_setup_q : f_level;
 wire [19:0] f_left = {2'd0, f_time} - {2'd0, f_timer} + 20'd1;
 wire [19:0] f_setup_time = {2'd0, f_setup} + 20'd1;
 wire [19:0] f_rank =
@@ -287,6 +310,10 @@ always @(posedge clk)
     assert (waits == 4'b0000 || waits == 4'b0001 || waits == 4'b0011 || waits == 4'b0111 || waits == 4'b1111);
     assert (f_waiting_count <= 3'd4);
     assert (f_restarted[0] || !f_reset[0]);
+    assert (restart == f_restart && (f_restart || !(f_timing_written || f_pins[0] || f_reset[0])));
+    assert (f_high_q < 18'd16 && f_low_q < 18'd16 && f_setup_q < 18'd16 && f_hold_q < 18'd16);
+    assert (f_high_q != 18'd0 && f_low_q != 18'd0 && f_setup_q != 18'd0 && f_hold_q != 18'd0);
+    if (!f_timing_written) assert (f_high_q == f_high && f_low_q == f_low && f_setup_q == f_setup && f_hold_q == f_hold);
     assert (f_reset[0] == $past(rst));
     assert (settle == f_pins[0]);
     assert (f_quiet_q == $past(quiet && !rst));
@@ -301,8 +328,8 @@ always @(posedge clk)
       assert ((f_is_pulse ? level_done : dir_done) == (f_timer == f_time));
     end
     // the timing that would begin next
-    if (!f_is_pulse && !settle) assert (level_done == ((step ? low_is_minimal : high_is_minimal) & ~f_restarted[0]));
-    if (f_is_ready) assert (dir_done == (setup_is_minimal & ~f_restarted[0]));
+    if (!f_is_pulse && !settle) assert (level_done == ((step ? f_low_q : f_high_q) == 18'd1 && !f_restarted[0]));
+    if (f_is_ready) assert (dir_done == (f_setup_q == 18'd1 && !f_restarted[0]));
     assert (waits_up == (waits[0] & ~waiting[0]) && waits_down == (waits[0] & waiting[0]));
     if (f_reset[0]) assert (f_is_pulse && f_step_shown && f_dir_shown && unsettled && waits == 4'd0 && !step_made);
 `ifndef WRITTEN
@@ -310,10 +337,10 @@ always @(posedge clk)
       assert (f_is_pulse && f_timer == 18'd1);
       assert (f_step_lasted >= (f_step ? f_high : f_low));
       if (!both_edges && f_step && !f_was_reset) assert (f_step_lasted == f_high);
-      if (!both_edges && f_step && f_was_reset) assert (f_since_reset <= f_high + 18'd1);
+      if (!both_edges && f_step && f_was_reset) assert (f_since_reset <= f_high + 18'd2);
     end else begin
       if (high && !f_was_reset) assert (f_step_lasted + 18'd1 == f_timer);
-      if (high && f_was_reset) assert (f_since_reset == f_timer);
+      if (high && f_was_reset) assert (f_since_reset == (f_restart ? 18'd0 : f_timer + 18'd1));
       if (f_is_pulse) assert ({1'b0, f_step_lasted} + 19'd1 >= {1'b0, f_timer});
       if (f_is_hold) assert ({1'b0, f_step_lasted} + 19'd1 >= {1'b0, f_level + f_timer});
     end
@@ -324,8 +351,8 @@ always @(posedge clk)
     else if (!f_dir_shown) assert (f_timer == 18'd1);
     else assert ({1'b0, f_dir_lasted} + 19'd1 >= {1'b0, f_timer});
 `else
-    assert (f_high_q < 18'd16 && f_low_q < 18'd16 && f_setup_q < 18'd16 && f_hold_q < 18'd16);
-    if (!f_timing_written) assert (f_high_q == f_high && f_low_q == f_low && f_setup_q == f_setup && f_hold_q == f_hold);
+    assert (f_high_qq < 18'd16 && f_low_qq < 18'd16 && f_setup_qq < 18'd16 && f_hold_qq < 18'd16);
+    if (!f_restarted[0]) assert (f_high_qq == f_high_q && f_low_qq == f_low_q && f_setup_qq == f_setup_q && f_hold_qq == f_hold_q);
     if (!f_step_shown && !settle) assert (f_is_pulse && f_level_over && (f_restarted[0] || f_timer == 18'd1));
     else begin
       assert (f_level_over == !f_is_pulse);
@@ -347,9 +374,9 @@ always @(posedge clk)
       assert (f_active == $past(step_begins, 2));
       assert (f_full[1] == $past(full, 2));
       assert (f_request[1] == $past(step_request, 2) && f_drop[1] == $past(drop, 2));
-      if (f_waiting_count == 3'd0 || f_restarted != 3'b000) assert (f_waited == 20'd0);
-      if (f_waiting_count != 3'd0 && f_restarted[1:0] == 2'b00) assert (f_waited + $past(f_rank, 2) <= f_patience);
-      if (f_restarted != 3'b000) assert (f_still == 20'd0);
+      if (f_waiting_count == 3'd0 || f_restart || f_restarted != 3'b000) assert (f_waited == 20'd0);
+      if (f_waiting_count != 3'd0 && !f_restart && f_restarted[1:0] == 2'b00) assert (f_waited + $past(f_rank, 2) <= f_patience);
+      if (f_restart || f_restarted != 3'b000) assert (f_still == 20'd0);
       if (f_still > 20'd2) begin
         assert (f_waiting_count == 3'd0 && waits == 4'd0);
         assert ($past(waiting[0], 2) == f_direction[1]);

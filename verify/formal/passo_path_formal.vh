@@ -68,7 +68,7 @@ always @(posedge clk)
     if (f_known) assert (f_velocity <= F_HALF && velocity_low == f_velocity[23:0]);
     if (f_known && !take_q) assert (velocity_high == f_velocity[47:24]);
     if (f_live) begin
-      assert (velocity_high <= F_HALF >> 24);
+      assert (f_pending <= F_HALF >> 24);
       assert (phase_low == f_phase[23:0]);
       if (!advance_q) assert (phase_high == f_phase[47:24] && !f_carry);
       else assert ({1'b0, phase_high} + f_pending == {f_carry, f_phase[47:24]});

@@ -25,8 +25,9 @@ module passo_settings_proof (
   wire        command_stop, command_abort, command_clear, command_zero;
   wire        needs_idle, needs_quiet, pins_need_quiet;
   wire        write_pins, write_step_timing, write_dir_timing, write_enable;
-  wire        upper_is_minimal, lower_is_minimal;
-  wire [15:0] step_high, step_low, dir_setup, dir_hold;
+  wire [ 1:0] write_place, timing_place;
+  wire [15:0] write_timing, timing;
+  wire        timing_written, write_is_minimal;
   wire        high_is_minimal, low_is_minimal, setup_is_minimal, hold_is_minimal;
   wire        both_edges, step_inverted, direction_inverted;
 
@@ -70,11 +71,15 @@ module passo_settings_proof (
     .select_position (),
     .bus_address     (bus_address[2:0]),
     .read_data       (),
-    .answers_position()
+    .answers_position(),
+    .timing_place    (write_place),
+    .timing          (write_timing),
+    .timing_is_minimal(write_is_minimal)
   );
 
   passo_axis_settings u_settings (
     .*,
+    .bus_data       (bus_data[4:0]),
     .enable         (),
     .enable_inverted()
   );
@@ -121,20 +126,23 @@ module passo_settings_proof (
   reg        f_checked_bad;
   reg        f_pushed;
   reg        f_write_pins = 1'b0;
-  reg        f_write_timing = 1'b0;
+  wire       f_writes_timing = write_step_timing | write_dir_timing;
+  wire [31:0] f_times = bus_data | {15'd0, bus_data[31:16] == 16'd0, 15'd0, bus_data[15:0] == 16'd0};
+  reg        f_wrote_timing = 1'b0;
+  reg        f_wrote_step;
+  reg [15:0] f_lower;
   reg  [7:0] f_drain_low;
-  reg [63:0] f_timings;
   reg  [2:0] f_pins;
-  wire [63:0] f_timings_now = {step_high, step_low, dir_setup, dir_hold};
   wire [ 2:0] f_pins_now = {both_edges, step_inverted, direction_inverted};
   always @(posedge clk) begin
     f_checked      <= bus_check & f_is_setting & ~rst;
     f_checked_bad  <= f_bad;
     f_pushed       <= bus_push;
     f_write_pins   <= write_pins & ~rst;
-    f_write_timing <= (write_step_timing | write_dir_timing) & ~rst;
+    f_wrote_timing <= f_writes_timing & ~rst;
+    f_wrote_step   <= write_step_timing;
+    f_lower        <= f_times[15:0];
     f_drain_low    <= drain_velocity[7:0];
-    f_timings      <= f_timings_now;
     f_pins         <= f_pins_now;
     if (f_started) begin
       rates_at_most_1 : assert (rate_target <= F_ONE && rate_slew <= F_ONE && stop_slew <= F_ONE);
@@ -151,11 +159,8 @@ module passo_settings_proof (
         zero_needs_quiet : assert (needs_quiet);
       if (bus_check && select && bus_address == CHANNEL_AXIS_BASE) pins_need_quiet_channel : assert (pins_need_quiet);
       if (command_stop || command_abort) stop_is_alone : assert (!command_clear && !command_zero && !(command_stop && command_abort));
-      timings_not_0 : assert (step_high != 16'd0 && step_low != 16'd0 && dir_setup != 16'd0 && dir_hold != 16'd0);
-      minimal_told :
-      assert (high_is_minimal == (step_high == 16'd1) && low_is_minimal == (step_low == 16'd1)
-              && setup_is_minimal == (dir_setup == 16'd1) && hold_is_minimal == (dir_hold == 16'd1));
-      if (!f_write_timing) timings_change_when_written : assert (f_timings_now == f_timings);
+      if (f_writes_timing) halves_as_sent : assert (write_timing == f_times[31:16] && write_place == {write_step_timing, 1'b1});
+      if (f_wrote_timing) lower_half_as_sent : assert (write_timing == f_lower && write_place == {f_wrote_step, 1'b0});
       if (!f_write_pins) pins_change_when_written : assert (f_pins_now == f_pins);
     end
   end

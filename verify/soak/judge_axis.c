@@ -18,7 +18,7 @@ static void write_step_timing(struct axis *axis, uint64_t now, uint32_t value)
 		return;
 	axis->exact = false;
 	if (now + SLACK < axis->level_over)
-		axis->level_over = now - SLACK + judge_level_time(axis);
+		axis->level_over = now - SLACK + TIMING_CLOCKS + judge_level_time(axis);
 	else if (judge_level_time(axis) < was)
 		axis->level_over -= was - judge_level_time(axis);
 	if (axis->hold_over != UINT64_MAX)
@@ -36,7 +36,7 @@ static void write_dir_timing(struct axis *axis, uint64_t now, uint32_t value)
 	if (now <= axis->level_over + SLACK) /* the write restarts this time as well */
 		axis->exact = false;
 	if (now + SLACK < axis->setup_over)
-		axis->setup_over = now - SLACK + axis->dir_setup;
+		axis->setup_over = now - SLACK + TIMING_CLOCKS + axis->dir_setup;
 	else if (axis->setup_over + SLACK >= now && axis->dir_setup < was_setup)
 		axis->setup_over -= was_setup - axis->dir_setup;
 	if (axis->hold_over == UINT64_MAX)
@@ -44,7 +44,7 @@ static void write_dir_timing(struct axis *axis, uint64_t now, uint32_t value)
 	if (now + SLACK < axis->level_over)
 		axis->hold_over = axis->level_over + axis->dir_hold;
 	else if (now + SLACK < axis->hold_over)
-		axis->hold_over = now - SLACK + axis->dir_hold;
+		axis->hold_over = now - SLACK + TIMING_CLOCKS + axis->dir_hold;
 	else if (axis->hold_over + SLACK >= now && axis->dir_hold < was_hold)
 		axis->hold_over -= was_hold - axis->dir_hold;
 }

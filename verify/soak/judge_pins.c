@@ -54,7 +54,7 @@ static void see_level(struct judge *judge, unsigned c, unsigned a)
 		FAIL(judge, "channel %u axis %u: STEP was active %llu clocks too long", c, a,
 		    (unsigned long long)(judge->now - axis->level_over));
 	axis->active = !axis->active;
-	axis->exact = judge->now > axis->written_at + SLACK;
+	axis->exact = judge->now > axis->written_at + TIMING_CLOCKS + SLACK;
 	axis->level_over = judge->now + judge_level_time(axis);
 	axis->hold_over = axis->level_over + axis->dir_hold;
 	if (axis->active && !axis->both_edges)

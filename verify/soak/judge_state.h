@@ -9,6 +9,8 @@
 
 /* Uncertainty in clocks of the time at which a write takes effect. */
 #define SLACK 3u
+/* Clocks by which a timing takes effect later than other settings; no running time ends meanwhile. */
+#define TIMING_CLOCKS 2u
 /* Shortest time from the start of a motion to `running` and to its first step: nothing may run within it
  * after a frame that requires rest. DIR may change a few clocks earlier, with the first line. */
 #define GATE_CLOCKS 32u
