@@ -178,8 +178,8 @@ TAKES = {
 @pytest.mark.parametrize("profile", PROFILES)
 def test_it_is_nearly_the_fastest_motion(profile: str) -> None:
     """Of linear ramps it is; of the others the reference is a bound."""
-    both = zip(paths(profile), fastest(profile), strict=False)
-    found = [time / least for (_, _, time), least in both if least > SHORTEST]
+    both = zip(drawn(profile), fastest(profile), strict=False)
+    found = [planned(*path) / least for path, least in both if least > SHORTEST]
     least, most = TAKES[profile]
     shares = np.quantile(found, SHARES)
     assert shares[0] > least and (shares < most).all(), shares
