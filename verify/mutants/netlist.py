@@ -97,7 +97,7 @@ MACHINED = Core(
     without=(*(module for module in PLAIN.modules if module not in BOTH), "passo_tables"),
 )
 # All channels that the tables can serve.
-CHANNELS = Core("channels", Parameters(8, 1, 7, 2, 2), ("passo_tables",))
+CHANNELS = Core("channels", Parameters(8, 1, 7, 3, 4), ("passo_tables",))
 # Buses are judged by their promises alone.
 WISHBONE = Core(
     "wishbone", Parameters(), ("passo_wishbone", "passo_words"), top="passo_wishbone", played=False

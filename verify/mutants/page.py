@@ -12,7 +12,7 @@ from passo.output import write_text
 from passo.toolchain import paths
 
 from verify.mutants.c_equal import NAME as OBJECT_CODE
-from verify.mutants.c_source import CMutant
+from verify.mutants.c_source import FOLDERS, CMutant
 from verify.mutants.fates import Fates
 from verify.mutants.netlist import Mutant
 
@@ -167,12 +167,20 @@ def _read(text: str, judges: Sequence[str]) -> dict[str, Score]:
 
 
 def _kept(new: Sequence[Score], old: dict[str, Score]) -> list[Score]:
-    """The rows with those of the page where more mutants have been played."""
-    kept = [
-        old[score.module] if score.module in old and old[score.module].waiting < score.waiting else score
-        for score in new
-    ]
-    return kept or list(old.values())
+    """The rows, with those of the page where more mutants have been played, or no others are known."""
+    known = {score.module: score for score in new}
+    for name, row in old.items():
+        if name in known and row.waiting >= known[name].waiting:
+            continue
+        if name in known or _exists(name):
+            known[name] = row
+    return sorted(known.values(), key=lambda score: score.module)
+
+
+def _exists(module: str) -> bool:
+    """Whether there still is such a source."""
+    places = [folder / module for folder in FOLDERS.values()] + [paths.rtl / f"{module}.v"]
+    return any(place.exists() for place in places)
 
 
 def _living(all_scores: Sequence[Score]) -> str:

@@ -6,7 +6,7 @@
 `--only` takes `rtl`, `c`, modules of rtl/ and files of the driver, the planner and G-code. A run continues
 where the last one ended: the fates are kept in build/mutants, and all that was killed is killed once more
 when the sources or the judges are others. A run of everything writes docs/reference/mutants.md; `--page`
-writes what is known, and keeps the rows of what has not been played.
+writes what is known, of all or of `--only`, and keeps the rows of what has not been played.
 """
 
 import argparse
@@ -76,6 +76,15 @@ def run_core(core: Core, seed: int, each: int, only: Collection[str]) -> list[Sc
     return scores(chosen, fates)
 
 
+def known_of(core: Core, seed: int, each: int, only: Collection[str]) -> list[Score]:
+    """What is known of it."""
+    if only and not any(core.mutates(module) for module in only):
+        return []
+    mutants, _ = drawn(core, seed, max(each, MOST))
+    chosen = [mutant for mutant in first_of(mutants, each) if not only or mutant.module in only]
+    return scores(chosen, Fates(f"rtl_{core.name}", "", again=False))
+
+
 def run_c(seed: int, count: int, only: Collection[str]) -> list[Score]:
     """The tests as judges of the C sources."""
     mutants, hashed = c_source.drawn(seed, count)
@@ -107,21 +116,18 @@ def main() -> None:
     began = time.monotonic()
     rtl: list[Score] = []
     c: list[Score] = []
-    if arguments.page:
-        for core in CORES:
-            mutants, _ = drawn(core, arguments.seed, max(arguments.each, MOST))
-            rtl += scores(first_of(mutants, arguments.each), Fates(f"rtl_{core.name}", "", again=False))
-        mutants_c, _ = c_source.drawn(arguments.seed, arguments.count)
-        c = scores(mutants_c, Fates("c", "", again=False))
-    else:
-        if (modules := _chosen(only, "rtl", "")) is not None:
-            for core in CORES:
-                rtl += run_core(core, arguments.seed, arguments.each, modules)
-        if (files := _chosen(only, "c", ".c")) is not None:
-            c = run_c(arguments.seed, arguments.count, files)
+    modules, files = _chosen(only, "rtl", ""), _chosen(only, "c", ".c")
+    for core in CORES if modules is not None else ():
+        run = known_of if arguments.page else run_core
+        rtl += run(core, arguments.seed, arguments.each, modules or [])
+    if files is not None and arguments.page:
+        mutants, _ = c_source.drawn(arguments.seed, arguments.count)
+        c = scores([one for one in mutants if not files or one.file in files], Fates("c", "", again=False))
+    elif files is not None:
+        c = run_c(arguments.seed, arguments.count, files)
     show_table(rtl, c)
     _say(f"{time.monotonic() - began:.0f} s")
-    if not only:
+    if arguments.page or not only:
         write(rtl, c, arguments.seed)
     for case in rtl_judge.unfair:
         _say(f"the judge finds fault with the core itself: {case}")
