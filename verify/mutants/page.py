@@ -76,7 +76,7 @@ def _reasons() -> list[tuple[re.Pattern[str], str, bool]]:
 def _shown(mutant: Mutant | CMutant) -> str:
     if isinstance(mutant, CMutant):
         return f"{mutant.name}: {mutant.says}"
-    return f"{mutant.name}, {mutant.source.split(', ')[-1]}"
+    return f"`{mutant.name}`, {mutant.source.split(', ')[-1]}"
 
 
 def scores(mutants: Sequence[Mutant | CMutant], fates: Fates) -> list[Score]:
@@ -161,7 +161,7 @@ def _read(text: str, judges: Sequence[str]) -> dict[str, Score]:
     for line in text.splitlines():
         if heading := re.fullmatch(r"(.*) \(\d+\):", line):
             reason = heading[1][0].lower() + heading[1][1:]
-        elif (item := re.match(r"\* (\w+(?:\.c)?)\b", line)) and item[1] in found:
+        elif (item := re.match(r"\* `?(\w+(?:\.c)?)\b", line)) and item[1] in found:
             found[item[1]].living.append((line[2:].replace("&lt;", "<").replace("\\|", "|"), reason))
     return found
 
