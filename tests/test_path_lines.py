@@ -16,7 +16,7 @@ from passo.path_rounding import Line
 from tests.test_path_relations import PROFILES, drawn
 
 FINE = 100_000  # steps/mm
-SHORTEST = 0.0064  # s: longer lines are not merged, with the default polls
+SHORTEST = 1 / 128  # s: longer lines are not merged
 
 
 def planned(lines: Sequence[Line], settings: PathSettings, early: bool) -> list[tuple[int, int]]:
