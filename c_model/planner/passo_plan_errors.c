@@ -2,7 +2,6 @@
  * Names and descriptions of the planner's errors.
  */
 #include <stddef.h>
-#include <string.h>
 
 #include "passo_plan.h"
 
@@ -69,8 +68,8 @@ static const char *find(enum passo_plan_error error, const char *strings, const 
 {
 	if ((unsigned)error >= sizeof(struct errors))
 		return unknown;
-	for (unsigned before = (unsigned)error; before > 0; before--)
-		strings += strlen(strings) + 1;
+	for (unsigned before = (unsigned)error; before > 0; strings++)
+		before -= *strings == '\0';
 	return strings;
 }
 

@@ -5,7 +5,6 @@
 
 #include <stdbool.h>
 #include <stddef.h>
-#include <string.h>
 
 #include "passo_plan.h"
 #include "passo_registers.h"
@@ -169,8 +168,8 @@ static const char *find(unsigned code, const char *errors, const char *refusals,
 
 	if (!refused && code >= PASSO_ERROR_COUNT)
 		return unknown;
-	for (unsigned before = refused ? code - FIRST_REFUSED : code; before > 0; before--)
-		at += strlen(at) + 1;
+	for (unsigned before = refused ? code - FIRST_REFUSED : code; before > 0; at++)
+		before -= *at == '\0';
 	return *at != '\0' ? at : unknown;
 }
 
