@@ -142,10 +142,13 @@ module passo_axis #(
   assign down_behind = waits[1] ? waiting[1] : step_request & direction;
   assign down_here   = waits[0] ? waiting[0] : step_request & direction;
 
-  wire high_next = (high & ~falls) | (step_begins & ~both_edges);
-  wire low_next = (low & ~low_over) | falls | (step_begins & both_edges) | settle;
-  wire setup_next = (setup & ~dir_done) | setup_begins;
-  assign timing_place = {high_next | low_next, high_next | low_next ? step ^ edge_begins : setup_next};
+  // The timing that runs in the next clock, from the states one LUT earlier than they are; any if none runs.
+  wire level_stays = high | (low & ~level_done);
+  wire dir_ends = (setup & dir_done) | settle;
+  wire high_or_waits = ready & ~step & (low ? level_done : ~high);
+  assign timing_place[1] = level_stays | dir_ends | ((low | idle) & ready);
+  assign timing_place[0] = (~level_done & (high | (low & step))) | (setup & ~dir_done) | (settle & step)
+                           | high_or_waits | setup_begins;
 
   integer i;
   always @(posedge clk) begin
@@ -165,9 +168,9 @@ module passo_axis #(
       dir_done   <= 1'b0;
     end
 
-    high  <= high_next;
-    low   <= low_next;
-    setup <= setup_next;
+    high  <= (high & ~falls) | (step_begins & ~both_edges);
+    low   <= (low & ~low_over) | falls | (step_begins & both_edges) | settle;
+    setup <= (setup & ~dir_done) | setup_begins;
     idle  <= free & ~step_begins & ~setup_begins & ~settle;
     hold  <= ((hold & ~dir_done) | low_over) & ~step_begins & ~setup_begins;
     step  <= step ^ edge_begins;

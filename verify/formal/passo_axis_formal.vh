@@ -274,7 +274,7 @@ end
 // --- EN follows its register
 reg f_enable_q;
 always @(posedge clk) begin
-  f_enable_q <= enable ^ enable_inverted;
+  f_enable_q <= enable != enable_inverted;
   if (f_started) enable_follows : assert (enable_pin == f_enable_q);
 end
 
