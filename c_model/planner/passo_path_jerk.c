@@ -14,8 +14,7 @@
 
 /* Velocities are found to one part in 2^12. */
 #define PRECISION 12u
-/* dv / T^2 of a cosine ramp by its highest jerk: 2 / pi^2, UQ0.16, less a 32nd for the corners at its ends.
- */
+/* dv / T^2 of a cosine ramp by its highest jerk: 2 / pi^2, UQ0.16, less a 32nd for corners at its ends. */
 #define SOFTNESS 12865u
 
 void passo_path_soften(struct passo_path_item *item, uint64_t jerk)

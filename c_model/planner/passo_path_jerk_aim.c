@@ -32,11 +32,10 @@ struct reach {
 	struct passo_path_law law;
 	uint64_t length;
 	uint64_t lowest; /* velocity that their limits and corners allow */
-	uint64_t
-	    rise; /* length from which on more is allowed than before, or of a ramp at the pace; 0: none */
-	uint64_t open;  /* `lowest` at the first end of a line that is not settled; 0: none */
-	uint64_t least; /* of a ramp that keeps the speed */
-	uint64_t pause; /* ticks for which the path goes on at the top of a ramp up, at least */
+	uint64_t rise;   /* length from which on more is allowed than before, no less than `least`; 0: none */
+	uint64_t open;   /* `lowest` at the first end of a line that is not settled; 0: none */
+	uint64_t least;  /* length of a ramp that keeps the speed */
+	uint64_t pause;  /* ticks for which the path goes on at the top of a ramp up, at least */
 };
 
 static void consider(const struct passo_path_planner *path, const struct reach *reach, uint64_t end,

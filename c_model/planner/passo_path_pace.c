@@ -81,6 +81,18 @@ uint64_t passo_path_length_in(const struct passo_path_planner *path, uint64_t sp
 	return passo_mul_shift(speeds, ticks << path->machine.tick_log2, 17);
 }
 
+/* The least that the curve of an item leaves, from the present speed over a length. */
+static uint64_t slope_left(
+    const struct passo_path_planner *path, const struct passo_path_item *item, bool up, uint64_t length)
+{
+	const uint64_t square = passo_path_square_of(path->velocity);
+	uint64_t slope = UINT64_MAX;
+
+	for (unsigned half = 0; half < passo_path_halves(item); half++)
+		slope = passo_path_smaller(slope, passo_path_slope(item, half, up, square, length));
+	return slope;
+}
+
 /* What is before the end of the ramps. */
 struct ahead {
 	uint64_t square; /* the lowest that is allowed */
@@ -116,10 +128,8 @@ static struct ahead look_ahead(
 
 		ahead.open = ahead.open || !passo_path_is_settled(path, index);
 		ahead.slope = passo_path_smaller(ahead.slope, item->slope);
-		for (unsigned half = 0; half < passo_path_halves(item); half++)
-			ahead.up = passo_path_smaller(
-			    ahead.up, passo_path_slope(item, half, true, passo_path_square_of(path->velocity),
-					  passo_path_smaller(passed, length)));
+		ahead.up = passo_path_smaller(
+		    ahead.up, slope_left(path, item, true, passo_path_smaller(passed, length)));
 		ahead.square = passo_path_smaller(ahead.square, item->top);
 		if (beyond > 0) {
 			ahead.square = passo_path_smaller(ahead.square, before);
@@ -235,15 +245,10 @@ static struct passo_path_aim calm_below(
 static struct passo_path_aim brake(const struct passo_path_planner *path, uint64_t least)
 {
 	const uint64_t from = path->velocity;
-	const struct passo_path_item *item = passo_path_item(path, path->planned);
-	uint64_t slope = item->slope;
+	const uint64_t slope = slope_left(path, passo_path_item(path, path->planned), false, 0);
 
-	for (unsigned half = 0; half < passo_path_halves(item); half++)
-		slope = passo_path_smaller(
-		    slope, passo_path_slope(item, half, false, passo_path_square_of(from), 0));
 	for (uint64_t to = from - from / 4; to > from / 8; to -= from / 4) {
-		const uint64_t needed =
-		    passo_mul_div(from - to, UINT64_C(1) << (17u - path->machine.tick_log2), slope);
+		const uint64_t needed = passo_path_ticks_over(path, from - to, slope); /* as for a length */
 		const uint64_t ticks = passo_path_larger(least, needed) + 1;
 		const uint64_t way = passo_path_length_in(path, from + to, ticks);
 		const uint64_t next = passo_path_pace_need(path, ticks, 2);

@@ -4,11 +4,11 @@
 #include <stddef.h>
 
 #include "passo_plan.h"
+#include "passo_strings.h"
 
 _Static_assert(PASSO_AXES_MAX == 8u, "BAD_AXES states the limit");
 
-/* X(name, text) in the order of the codes. Strings one behind the other, which takes less flash than a
- * pointer to each; names and texts apart: a program that says only names does not have the texts. */
+/* X(name, text) in the order of the codes. */
 #define ERRORS(X)                                                                                            \
 	X(OK, "The plan is valid.")                                                                          \
 	X(BAD_CLOCK, "The clock must be above 0 Hz and a tick 2^" PASSO_TICK_LOG2_MIN_WORDS                  \
@@ -49,15 +49,11 @@ _Static_assert(PASSO_AXES_MAX == 8u, "BAD_AXES states the limit");
 #define ERRORS_OF_GOTO(X) X(TOO_NEAR, "The axis cannot come to rest before the target.")
 #endif
 
-#define NAME(name, text) #name "\0"
-#define TEXT(name, text) text "\0"
+static const char NAMES[] = ERRORS(PASSO_STRING_NAME) ERRORS_OF_GOTO(PASSO_STRING_NAME);
+static const char TEXTS[] = ERRORS(PASSO_STRING_TEXT) ERRORS_OF_GOTO(PASSO_STRING_TEXT);
 
-static const char NAMES[] = ERRORS(NAME) ERRORS_OF_GOTO(NAME);
-static const char TEXTS[] = ERRORS(TEXT) ERRORS_OF_GOTO(TEXT);
-
-#define PLACE(name, text) char name;
 struct errors {
-	ERRORS(PLACE) ERRORS_OF_GOTO(PLACE)
+	ERRORS(PASSO_STRING_PLACE) ERRORS_OF_GOTO(PASSO_STRING_PLACE)
 };
 #define IN_ORDER(name, text) _Static_assert(offsetof(struct errors, name) == PASSO_PLAN_##name, #name);
 ERRORS(IN_ORDER)
@@ -66,11 +62,7 @@ ERRORS_OF_GOTO(IN_ORDER)
 /* The string of an error, or `unknown`. */
 static const char *find(enum passo_plan_error error, const char *strings, const char *unknown)
 {
-	if ((unsigned)error >= sizeof(struct errors))
-		return unknown;
-	for (unsigned before = (unsigned)error; before > 0; strings++)
-		before -= *strings == '\0';
-	return strings;
+	return (unsigned)error < sizeof(struct errors) ? passo_string(strings, (unsigned)error) : unknown;
 }
 
 const char *passo_plan_error_name(enum passo_plan_error error)

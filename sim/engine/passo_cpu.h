@@ -28,8 +28,8 @@ enum passo_cpu_stop {
 };
 
 struct passo_cpu_config {
-	uint32_t flash_size,
-	    ram_size; /* at 0x08000000, and once more at 0; at 0x20000000. The chip tells the first */
+	uint32_t flash_size; /* at 0x08000000, and once more at 0; the chip tells it */
+	uint32_t ram_size;   /* at 0x20000000 */
 	uint32_t (*read)(void *user, uint32_t address, uint32_t size);
 	void (*write)(void *user, uint32_t address, uint32_t size, uint32_t value);
 	/* A store into flash, which the processor itself does not change; false: it is a fault. */

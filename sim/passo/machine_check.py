@@ -25,7 +25,7 @@ from passo.gcode import AXIS_LETTERS
 from passo.grbl import Grbl
 from passo.grbl_setup import core_for
 from passo.machine_file import MachineFile, read_machine
-from passo.make_command import at_home
+from passo.make_command import at_home, core_of
 from passo.run import open_engine
 
 RESET, REPORT = b"\x18", b"?"
@@ -138,9 +138,8 @@ def build_of(machine: MachineFile) -> int:
     if not machine.board:
         return 0
     chosen = board(machine.board)
-    core = len(machine.ends), machine.clock_hz / 1e6, machine.parts
     with TemporaryDirectory() as folder:
-        design, _ = generate(chosen, Path(folder), *core, more=at_home(machine, chosen))
+        design, _ = generate(chosen, Path(folder), *core_of(machine), more=at_home(machine, chosen))
     return int(design.parameters["BUILD"])
 
 

@@ -122,8 +122,7 @@ def _images(machine: MachineFile, chosen: Board, path: Path) -> Iterator[str]:
     yield f"  {FIRMWARE}  {flash}"
     bitstream = path.with_suffix(f".{chosen.device.family.suffix}")
     try:
-        core = len(machine.ends), machine.clock_hz / 1e6, machine.parts
-        made = synth.make(chosen, *core, bitstream.resolve(), tell, at_home(machine, chosen))
+        made = synth.make(chosen, *core_of(machine), bitstream.resolve(), tell, at_home(machine, chosen))
     except ToolError as error:
         raise Failure(str(error)) from None
     if not made:
@@ -214,6 +213,11 @@ def _summary(machine: MachineFile, chosen: Board) -> Iterator[str]:
 
 def _mask(machine: MachineFile, name: str) -> int:
     return sum((name in end.switches) << axis for axis, end in enumerate(machine.ends))
+
+
+def core_of(machine: MachineFile) -> tuple[int, float, tuple[str, ...]]:
+    """Axes, MHz and parts of its core, as the board makes it."""
+    return len(machine.ends), machine.clock_hz / 1e6, machine.parts
 
 
 def at_home(machine: MachineFile, chosen: Board) -> dict[str, int]:

@@ -8,6 +8,7 @@
 
 #include "passo_plan.h"
 #include "passo_registers.h"
+#include "passo_strings.h"
 
 /* X(name, text) in the order of the codes; G and P are those of calls that PASSO_WITHOUT_GOTO and
  * PASSO_WITHOUT_PARTS leave out. */
@@ -91,13 +92,9 @@
 	X(BUSY, "rejected: not allowed in the channel's state")                                              \
 	X(BAD_VALUE, "rejected: a value is out of range")
 
-/* Strings one behind the other, which takes less flash than a pointer to each. Names and texts are apart: a
- * program that says only names does not have the texts. */
 #define FIRST_REFUSAL PASSO_VERDICT_BAD_CRC
 #define FIRST_REFUSED (PASSO_ERROR_REFUSED + (unsigned)FIRST_REFUSAL)
 
-#define NAME(name, text) #name "\0"
-#define TEXT(name, text) text "\0"
 #define LEFT_OUT(name, text) "\0"
 #ifdef PASSO_WITHOUT_GOTO
 #define OF_GOTO(part) LEFT_OUT
@@ -110,19 +107,19 @@
 #define OF_PARTS(part) part
 #endif
 
-static const char error_names[] = "OK\0PENDING\0" ERRORS(NAME, OF_GOTO(NAME), OF_PARTS(NAME));
-static const char error_texts[] =
-    "no error\0the frame is still in flight\0" ERRORS(TEXT, OF_GOTO(TEXT), OF_PARTS(TEXT));
-static const char refusal_names[] = REFUSALS(NAME);
-static const char refusal_texts[] = REFUSALS(TEXT);
+static const char error_names[] =
+    "OK\0PENDING\0" ERRORS(PASSO_STRING_NAME, OF_GOTO(PASSO_STRING_NAME), OF_PARTS(PASSO_STRING_NAME));
+static const char error_texts[] = "no error\0the frame is still in flight\0" ERRORS(
+    PASSO_STRING_TEXT, OF_GOTO(PASSO_STRING_TEXT), OF_PARTS(PASSO_STRING_TEXT));
+static const char refusal_names[] = REFUSALS(PASSO_STRING_NAME);
+static const char refusal_texts[] = REFUSALS(PASSO_STRING_TEXT);
 
-#define PLACE(name, text) char name;
 struct errors {
 	char OK, PENDING;
-	ERRORS(PLACE, PLACE, PLACE)
+	ERRORS(PASSO_STRING_PLACE, PASSO_STRING_PLACE, PASSO_STRING_PLACE)
 };
 struct refusals {
-	REFUSALS(PLACE)
+	REFUSALS(PASSO_STRING_PLACE)
 };
 #define IN_ORDER(name, text) _Static_assert(offsetof(struct errors, name) == PASSO_ERROR_##name, #name);
 ERRORS(IN_ORDER, IN_ORDER, IN_ORDER)
@@ -168,8 +165,7 @@ static const char *find(unsigned code, const char *errors, const char *refusals,
 
 	if (!refused && code >= PASSO_ERROR_COUNT)
 		return unknown;
-	for (unsigned before = refused ? code - FIRST_REFUSED : code; before > 0; at++)
-		before -= *at == '\0';
+	at = passo_string(at, refused ? code - FIRST_REFUSED : code);
 	return *at != '\0' ? at : unknown;
 }
 

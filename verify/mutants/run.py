@@ -35,7 +35,7 @@ from verify.mutants import (
     timings_judge,
 )
 from verify.mutants.fates import Fates, hash_of
-from verify.mutants.netlist import CORES, MOST, Core, drawn, first_of, library
+from verify.mutants.netlist import CORES, MOST, Core, Mutant, drawn, first_of, library
 from verify.mutants.page import Score, scores, show_table, write
 from verify.soak.program import build as program
 
@@ -47,14 +47,27 @@ def _say(text: str) -> None:
     console.print(f"{time.strftime('%T')} {text}", highlight=False, markup=False, soft_wrap=True)
 
 
+def _of_core(core: Core, seed: int, each: int, only: Collection[str]) -> tuple[list[Mutant], str]:
+    """The mutants of a core, of some modules or of all, and what identifies it."""
+    if only and not any(core.mutates(module) for module in only):
+        return [], ""
+    mutants, hashed = drawn(core, seed, max(each, MOST))
+    return [mutant for mutant in first_of(mutants, each) if not only or mutant.module in only], hashed
+
+
+def _of_c(seed: int, count: int, only: Collection[str]) -> tuple[list[c_source.CMutant], str]:
+    """Those of the C sources."""
+    mutants, hashed = c_source.drawn(seed, count)
+    return [mutant for mutant in mutants if not only or mutant.file in only], hashed
+
+
 def run_core(core: Core, seed: int, each: int, only: Collection[str]) -> list[Score]:
     """All judges of the RTL: the quick ones first."""
-    if only and not any(core.mutates(module) for module in only):
+    chosen, hashed = _of_core(core, seed, each, only)
+    if not chosen:
         return []
-    mutants, hashed = drawn(core, seed, max(each, MOST))
     soak = program()
     fates = Fates(f"rtl_{core.name}", hash_of([soak], hashed, str(seed)))
-    chosen = [mutant for mutant in first_of(mutants, each) if not only or mutant.module in only]
     if not core.played:
         formal_judge.judge(core, chosen, fates, _say, formal_judge.LIMIT)
         return scores(chosen, fates)
@@ -78,17 +91,13 @@ def run_core(core: Core, seed: int, each: int, only: Collection[str]) -> list[Sc
 
 def known_of(core: Core, seed: int, each: int, only: Collection[str]) -> list[Score]:
     """What is known of it."""
-    if only and not any(core.mutates(module) for module in only):
-        return []
-    mutants, _ = drawn(core, seed, max(each, MOST))
-    chosen = [mutant for mutant in first_of(mutants, each) if not only or mutant.module in only]
+    chosen, _ = _of_core(core, seed, each, only)
     return scores(chosen, Fates(f"rtl_{core.name}", "", again=False))
 
 
 def run_c(seed: int, count: int, only: Collection[str]) -> list[Score]:
     """The tests as judges of the C sources."""
-    mutants, hashed = c_source.drawn(seed, count)
-    chosen = [mutant for mutant in mutants if not only or mutant.file in only]
+    chosen, hashed = _of_c(seed, count, only)
     fates = Fates("c", hashed, again=False)
     c_equal.judge(chosen, fates, _say)
     c_judge.judge(chosen, fates, _say)
@@ -121,8 +130,8 @@ def main() -> None:
         run = known_of if arguments.page else run_core
         rtl += run(core, arguments.seed, arguments.each, modules or [])
     if files is not None and arguments.page:
-        mutants, _ = c_source.drawn(arguments.seed, arguments.count)
-        c = scores([one for one in mutants if not files or one.file in files], Fates("c", "", again=False))
+        chosen, _ = _of_c(arguments.seed, arguments.count, files)
+        c = scores(chosen, Fates("c", "", again=False))
     elif files is not None:
         c = run_c(arguments.seed, arguments.count, files)
     show_table(rtl, c)
