@@ -175,17 +175,27 @@ bool passo_path_is_settled(const struct passo_path_planner *path, uint32_t index
 	return index < path->final;
 }
 
+/* The square from which an item comes down to one at its end, with flat ends of a length in all. */
+static uint64_t reach_over(const struct passo_path_item *item, uint64_t end, uint64_t flat, uint64_t behind)
+{
+	const uint64_t length = (uint64_t)item->substeps << 32;
+
+	if (flat == 0 && passo_path_halves(item) == 1)
+		return end + passo_path_fall(item, end);
+	return passo_path_before(item, end, length - passo_path_smaller(flat, length), behind);
+}
+
 /* Highest square at the start of an item from which the path can come to rest. */
 static uint64_t reach_of(const struct passo_path_planner *path, uint32_t index,
     const struct passo_path_item *item, const struct passo_path_item *next)
 {
-	const uint64_t end = end_square(item, next), length = (uint64_t)item->substeps << 32;
+	const uint64_t end = end_square(item, next);
 	const uint64_t behind = passo_path_flat(path, index + 1, index, end, true);
-	const uint64_t flat =
-	    passo_path_smaller(behind + passo_path_flat(path, index, index, item->corner, false), length);
-	const uint64_t most = flat == 0 && passo_path_halves(item) == 1
-	                        ? end + passo_path_fall(item, end)
-	                        : passo_path_before(item, end, length - flat, behind);
+	/* its flat end is that of a square which it cannot exceed */
+	const uint64_t plain = reach_over(item, end, behind, behind);
+	const uint64_t before =
+	    passo_path_flat(path, index, index, passo_path_smaller(item->corner, plain), false);
+	const uint64_t most = before == 0 ? plain : reach_over(item, end, before + behind, behind);
 	const uint64_t reach = passo_path_smaller(item->corner, most);
 
 	/* what was possible with fewer lines still is */

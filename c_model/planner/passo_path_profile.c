@@ -127,8 +127,10 @@ static unsigned all_parts(const struct passo_path_planner *path, uint32_t index,
 	if (left > before + behind)
 		count +=
 		    middle_parts(path, index, left - before - behind, behind, square, level, parts + count);
+	if (count > 0)
+		square = parts[count - 1].square;
 	return put(parts, count, PASSO_PATH_FLAT, behind,
-	    count > 0 ? parts[count - 1].square : passo_path_end_square(path, index), slope);
+	    passo_path_smaller(square, passo_path_end_square(path, index)), slope);
 }
 
 unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index, uint64_t left,
@@ -140,14 +142,17 @@ unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index,
 	const uint64_t begun = passo_path_flat(path, index, index, corner, true);
 	const uint64_t before = begun > passed ? begun - passed : 0;
 	uint64_t behind = passo_path_flat(path, index + 1, index, end, true);
-	const unsigned count =
+	unsigned count =
 	    all_parts(path, index, left, before, passo_path_smaller(behind, left), square, level, parts);
 #ifndef PASSO_WITHOUT_ROUNDING
-	/* no valley: it comes up to the corner */
-	if (behind == 0 && parts[count - 1].kind == PASSO_PATH_UP) {
-		behind = passo_path_flat(path, index + 1, index, end, false);
+	/* it comes up to the corner, so that is no valley; nor does it need more than at the highest speed
+	 * there */
+	if (parts[count - 1].square < end) {
 		if (behind > 0)
-			return all_parts(path, index, left, before, passo_path_smaller(behind, left), square,
+			count = all_parts(path, index, left, before, 0, square, level, parts);
+		behind = passo_path_flat(path, index + 1, index, parts[count - 1].square, false);
+		if (behind > 0)
+			count = all_parts(path, index, left, before, passo_path_smaller(behind, left), square,
 			    level, parts);
 	}
 #endif

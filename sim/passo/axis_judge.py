@@ -87,17 +87,36 @@ class Marks:
         """The corners of a path of lines from the origin: each between its last step and the next one."""
         path = rounded(lines, settings)
         scale = np.array([float(axis.steps_per_mm) for axis in settings.axes])
-        steps = np.abs(np.diff(np.round(path.points * scale), axis=0))
+        places = np.round(path.points * scale).astype(int)
+        corners = path.kept[1:-1]
         begin, end = np.zeros(len(path.corner)), np.full(len(path.corner), np.inf)
         for axis, clock in enumerate(clocks):
             time = clock / settings.clock_hz
-            done = np.cumsum(steps[:, axis])[path.kept[1:-1] - 1].astype(int)
-            done = np.minimum(done, len(time))
+            wanted = np.cumsum(np.abs(np.diff(places[:, axis])))[corners - 1]
+            done = _steps_until(places[corners, axis], wanted, positions[axis])
             begin = np.maximum(begin, np.concatenate([[0.0], time])[done])
             end = np.minimum(end, np.append(time, np.inf)[done])
         end = np.maximum(begin, np.where(np.isinf(end), begin, end))
         order = np.argsort(np.concatenate([begin, end]))
         return cls(np.concatenate([begin, end])[order], np.concatenate([path.off, path.off])[order])
+
+
+def _steps_until(places: np.ndarray, wanted: np.ndarray, positions: np.ndarray) -> np.ndarray:
+    """How many steps an axis has made when it is at each of these places, in turn; `wanted`: of the lines.
+
+    It makes fewer where lines are merged: at the far end of a curve it need not go there and back. So of all
+    times at which it is at a place it is the one nearest to that, less what was missing at the last place.
+    """
+    own = np.concatenate([[0], positions]).astype(int)
+    order = np.argsort(own, kind="stable")
+    first, last = (np.searchsorted(own[order], places, side) for side in ("left", "right"))
+    done, missing = np.zeros(len(places), int), 0
+    for i in range(len(places)):
+        near, done[i] = order[first[i] : last[i]], wanted[i] - missing
+        if len(near):
+            done[i] = near[np.argmin(np.abs(near - done[i]))]
+            missing = wanted[i] - done[i]
+    return np.clip(done, 0, len(own) - 1)
 
 
 def shares(
