@@ -2,6 +2,7 @@
 """Measures a path: its time against the fastest motion, and its pins against the limits of the axes."""
 
 from dataclasses import dataclass, field, replace
+from math import inf
 
 from passo.axis_judge import Marks, Share, shares
 from passo.driver import DriverError
@@ -83,12 +84,16 @@ def _ratios(measured: Measured, lines: list[Line], settings: PathSettings, fits:
     known = max(len(lines) + 4, LOOK_AHEAD)  # with fewer places the pace allows fewer ramps
     paced = plan(lines, settings, known).seconds
     settings = replace(settings, polls=FAST_POLLS)
-    seconds = plan(lines, settings, known).seconds
-    ratio, measured.paced = seconds / measured.optimum, paced / seconds
+    planned = plan(lines, settings, known)
+    seconds = planned.seconds
+    slowest = min((feed for _, feed in lines if feed is not None), default=inf)
+    rounding = 1 / planned.path.substeps_per_mm / slowest  # lines are whole substeps
+    ratio, measured.paced = (seconds - rounding) / measured.optimum, paced / seconds
     if settings.profile == "linear":
         measured.unlimited = ratio
         if fits:
-            measured.look_ahead = plan(lines, settings, LOOK_AHEAD).seconds / measured.optimum
+            limited = plan(lines, settings, LOOK_AHEAD).seconds
+            measured.look_ahead = (limited - rounding) / measured.optimum
     elif settings.profile == "jerk":
         measured.soft = ratio * measured.optimum / soft_seconds(lines, settings)
     else:

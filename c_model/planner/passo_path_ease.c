@@ -18,21 +18,27 @@
 /* An axis with less than this part of the direction and of its change is none of the curve. */
 #define SMALL 8u
 
+/* The acceleration of an axis in the middle of a ramp with the slope of a line. */
+static uint64_t peak_of(
+    const struct passo_path_planner *path, uint64_t slope, const int32_t *unit, uint32_t axis)
+{
+	const uint64_t twice = passo_mul_div(slope, passo_path_size32(unit[axis]), PASSO_PATH_ONE);
+
+	return passo_mul_div(twice, UINT32_C(1) << 15, path->gentleness);
+}
+
 /* What the ramps of the curved lines beside a corner leave of the acceleration of an axis. */
 static uint64_t left_of(const struct passo_path_planner *path, const struct passo_path_corner *corner,
     const int32_t *unit, uint32_t axis, const struct passo_path_item *item)
 {
 	const struct passo_path_item *last = passo_path_item(path, path->added - 1);
 	const uint64_t most = path->axis[axis].acceleration, excess = most + most / EXCESS;
-	uint64_t slope = 0; /* of the square of this axis, twice */
+	uint64_t peak = 0;
 
 	if (corner->bends_before)
-		slope =
-		    passo_mul_div(last->slope, passo_path_size32(path->at.direction[axis]), PASSO_PATH_ONE);
+		peak = peak_of(path, last->slope, path->at.direction, axis);
 	if (corner->bends_behind)
-		slope = passo_path_larger(
-		    slope, passo_mul_div(item->slope, passo_path_size32(unit[axis]), PASSO_PATH_ONE));
-	const uint64_t peak = passo_mul_div(slope, UINT32_C(1) << 15, path->gentleness);
+		peak = passo_path_larger(peak, peak_of(path, item->slope, unit, axis));
 	return excess > peak ? passo_path_smaller(most, excess - peak) : 0;
 }
 
@@ -120,6 +126,27 @@ static uint32_t lacking(const struct passo_path_planner *path, const struct pass
 	return across <= weakest / 64 * 11 ? 0 : across <= weakest / 64 * 43 ? 1 : 2;
 }
 
+#ifndef PASSO_WITHOUT_JERK_PATHS
+/* Of a lone corner at a square: what a ramp over it lacks of the slope of a line beside it, in 256ths. What
+ * it leaves of the acceleration of an axis before and behind the corner, in all, is for the corner. */
+static uint32_t lacking_over(const struct passo_path_planner *path, const struct passo_path_corner *corner,
+    const int32_t *unit, uint64_t slope, uint64_t square)
+{
+	uint64_t lacks = 0;
+
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
+		const uint64_t own = path->axis[axis].acceleration, most = own + own / EXCESS;
+		const uint64_t along = peak_of(path, slope, unit, axis);
+		const uint64_t half = passo_mul_div(square, corner->change[axis], corner->over) / 2;
+		const uint64_t left = most > half ? most - half : 0;
+
+		if (along > left)
+			lacks = passo_path_larger(lacks, passo_mul_div(along - left, 256, along));
+	}
+	return (uint32_t)passo_path_smaller(lacks, 255);
+}
+#endif
+
 uint64_t passo_path_shaped_corner(const struct passo_path_planner *path,
     const struct passo_path_corner *corner, const int32_t *unit, struct passo_path_item *item)
 {
@@ -148,7 +175,18 @@ uint64_t passo_path_shaped_corner(const struct passo_path_planner *path,
 		ease(path, last, quarters, most);
 	if (corner->bends_behind)
 		ease(path, item, quarters, most);
-	return passo_path_smaller(square_by(path, corner, unit, item), fastest);
+	const uint64_t square = passo_path_smaller(square_by(path, corner, unit, item), fastest);
+#ifndef PASSO_WITHOUT_JERK_PATHS
+	if (soft && !bends) {
+		const uint64_t passed =
+		    passo_path_smaller(square, passo_path_smaller(wanted(last), wanted(item)));
+
+		item->passing = (uint8_t)passo_path_larger(
+		    lacking_over(path, corner, path->at.direction, last->slope, passed),
+		    lacking_over(path, corner, unit, item->slope, passed));
+	}
+#endif
+	return square;
 }
 
 #endif

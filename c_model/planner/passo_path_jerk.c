@@ -69,6 +69,12 @@ uint64_t passo_path_highest(const struct passo_path_planner *path, const struct 
 	return low;
 }
 
+uint64_t passo_path_pass_slope(const struct passo_path_item *item, uint64_t slope)
+{
+	slope = passo_path_smaller(slope, item->slope);
+	return passo_path_larger(slope - passo_mul_div(slope, item->passing, 256), 1);
+}
+
 uint64_t passo_path_velocity_after(const struct passo_path_planner *path, uint32_t index)
 {
 	return passo_path_velocity_of(passo_path_end_square(path, index));
@@ -99,9 +105,10 @@ uint64_t passo_path_soft_reach(struct passo_path_planner *path, uint32_t index)
 	uint64_t reach = passo_path_square_of(highest_before(path, &best));
 
 	if (!passo_path_rests_after(path, index) && reach < item->corner) {
-		const struct passo_path_descent *next = &passo_path_item(path, index + 1)->descent;
+		const struct passo_path_item *behind = passo_path_item(path, index + 1);
+		const struct passo_path_descent *next = &behind->descent;
 		const struct passo_path_descent over = {
-		    .slope = passo_path_smaller(best.slope, next->slope),
+		    .slope = passo_path_smaller(passo_path_pass_slope(behind, best.slope), next->slope),
 		    .jerk = passo_path_smaller(best.jerk, next->jerk),
 		    .length = best.length + next->length,
 		    .lowest = passo_path_smaller(best.lowest, next->lowest),

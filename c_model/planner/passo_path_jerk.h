@@ -25,6 +25,10 @@ uint64_t passo_path_detour(const struct passo_path_planner *path, const struct p
 uint64_t passo_path_highest(const struct passo_path_planner *path, const struct passo_path_law *law,
     uint64_t from, uint64_t pause, uint64_t to, uint64_t length, uint64_t most);
 
+/* Slope of a ramp that passes the start of an item: no more than those of both lines, less over a lone
+ * corner. */
+uint64_t passo_path_pass_slope(const struct passo_path_item *item, uint64_t slope);
+
 /* Highest velocity at the end of an item. */
 uint64_t passo_path_velocity_after(const struct passo_path_planner *path, uint32_t index);
 

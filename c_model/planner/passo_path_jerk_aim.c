@@ -114,6 +114,7 @@ static struct choice choose(const struct passo_path_planner *path, uint32_t leas
 		if (corner + passo_path_change(path, next->slope, PASSO_PATH_LANDING_TICKS) < from)
 			break;
 		reach->lowest = passo_path_smaller(reach->lowest, passo_path_larger(corner, from));
+		reach->law.slope = passo_path_pass_slope(next, reach->law.slope);
 		if (is_enough(path, reach, &choice))
 			break;
 	}
