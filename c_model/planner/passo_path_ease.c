@@ -110,20 +110,37 @@ static void ease(
 		item->slope = passo_path_larger(passo_path_smaller(item->slope, most), 1);
 }
 
-/* What the lines of a curve lack, by the acceleration across them at a square. */
-static uint32_t lacking(const struct passo_path_planner *path, const struct passo_path_corner *corner,
-    const int32_t *unit, uint64_t square)
+/* The least acceleration of the axes of a curve. */
+static uint64_t weakest_of(
+    const struct passo_path_planner *path, const struct passo_path_corner *corner, const int32_t *unit)
 {
 	const uint64_t turn = passo_isqrt64(corner->turn);
-	const uint64_t across = passo_mul_div(square, turn, corner->over);
 	uint64_t weakest = PASSO_PATH_SQUARE_MAX;
 
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
 		if (passo_path_size32(unit[axis]) >= PASSO_PATH_ONE / SMALL
-		    || corner->change[axis] >= turn / SMALL)
+		    || corner->change[axis] > turn / SMALL)
 			weakest = passo_path_smaller(weakest, path->axis[axis].acceleration);
 	}
-	return across <= weakest / 64 * 11 ? 0 : across <= weakest / 64 * 43 ? 1 : 2;
+	return weakest;
+}
+
+/* What the lines of a curve lack, by the acceleration across them. With one slope for all directions, that of
+ * the weakest axis, it may be 11 and 43; a little slower curve is worth more slope. */
+static uint32_t lacking(uint64_t across, uint64_t weakest)
+{
+	return across <= weakest / 64 * 11 ? 0 : across <= weakest / 64 * 60 ? 1 : 2;
+}
+
+/* Greatest slope in a curve with profile jerk, of a radius, at a square. */
+static uint64_t soft_slope(const struct passo_path_planner *path, uint64_t radius, uint64_t jerk,
+    uint64_t square, uint64_t acceleration)
+{
+	const uint64_t velocity = passo_path_larger(passo_isqrt64(square), 1);
+	const uint64_t most =
+	    passo_mul_div(passo_mul_div(jerk, radius << 8, velocity), ACROSS, UINT32_C(1) << 16);
+
+	return passo_mul_div(2 * passo_path_smaller(most, acceleration), path->gentleness, UINT32_C(1) << 16);
 }
 
 #ifndef PASSO_WITHOUT_JERK_PATHS
@@ -156,18 +173,17 @@ uint64_t passo_path_shaped_corner(const struct passo_path_planner *path,
 	const uint64_t radius = radius_of(corner), jerk = jerk_of(path, corner);
 	const uint64_t needed = passo_path_larger(
 	    corner->bends_before ? wanted(last) : 0, corner->bends_behind ? wanted(item) : 0);
-	uint32_t quarters = bends ? lacking(path, corner, unit, needed) : 0;
+	const uint64_t weakest = weakest_of(path, corner, unit);
+	const uint64_t across = passo_mul_div(needed, passo_isqrt64(corner->turn), corner->over);
+	uint32_t quarters = bends ? lacking(across, weakest) : 0;
 	uint64_t most = UINT64_MAX, fastest = UINT64_MAX;
 
 	if (soft && bends) {
 		while (quarters < 2 && soft_square(radius, jerk / JERK_PARTS[quarters]) < needed)
 			quarters++;
 		fastest = soft_square(radius, jerk / JERK_PARTS[quarters]);
-		const uint64_t velocity = passo_isqrt64(passo_path_smaller(fastest, needed));
-		const uint64_t along = passo_mul_div(jerk, radius << 8, passo_path_larger(velocity, 1));
-
-		most = passo_mul_div(
-		    2 * passo_mul_div(along, ACROSS, UINT32_C(1) << 16), path->gentleness, UINT32_C(1) << 16);
+		most = soft_slope(path, radius, jerk, passo_path_smaller(fastest, needed),
+		    across > weakest / EXCESS ? weakest : PASSO_PATH_SQUARE_MAX >> 2);
 	} else if (soft) {
 		fastest = soft_square(radius, jerk / 2);
 	}
