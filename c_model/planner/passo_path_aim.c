@@ -59,7 +59,7 @@ static bool is_long(
 /* Whether two slopes can share a ramp. */
 static bool is_similar(uint64_t a, uint64_t b)
 {
-	return passo_path_larger(a, b) - passo_path_smaller(a, b) <= a / 64;
+	return passo_path_larger(a, b) - passo_path_smaller(a, b) <= a / 32;
 }
 
 /* Whether the ramp has to end before this part. */

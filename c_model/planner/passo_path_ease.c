@@ -65,14 +65,17 @@ static uint64_t radius_of(const struct passo_path_corner *corner)
 	return passo_path_smaller(passo_mul_div(corner->over, 256, turn), UINT32_MAX);
 }
 
-/* Of the weakest axis that turns. */
+/* Of the weakest axis that turns; one with a small part of the turn is stronger. */
 static uint64_t jerk_of(const struct passo_path_planner *path, const struct passo_path_corner *corner)
 {
+	const uint64_t part = passo_isqrt64(corner->turn) / SMALL;
 	uint64_t jerk = PASSO_PATH_SQUARE_MAX;
 
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		if (corner->change[axis] > 0)
-			jerk = passo_path_smaller(jerk, path->axis[axis].jerk);
+		const uint64_t change = corner->change[axis], most = passo_path_larger(change, part);
+
+		if (change > 0)
+			jerk = passo_path_smaller(jerk, passo_mul_div(path->axis[axis].jerk, most, change));
 	}
 	return jerk;
 }
@@ -110,16 +113,16 @@ static void ease(
 		item->slope = passo_path_larger(passo_path_smaller(item->slope, most), 1);
 }
 
-/* The least acceleration of the axes of a curve. */
-static uint64_t weakest_of(
-    const struct passo_path_planner *path, const struct passo_path_corner *corner, const int32_t *unit)
+/* The least acceleration of the axes that move along a curve, or also of those that turn in it. */
+static uint64_t weakest_of(const struct passo_path_planner *path, const struct passo_path_corner *corner,
+    const int32_t *unit, bool turning)
 {
 	const uint64_t turn = passo_isqrt64(corner->turn);
-	uint64_t weakest = PASSO_PATH_SQUARE_MAX;
+	uint64_t weakest = PASSO_PATH_SQUARE_MAX >> 2;
 
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
 		if (passo_path_size32(unit[axis]) >= PASSO_PATH_ONE / SMALL
-		    || corner->change[axis] > turn / SMALL)
+		    || (turning && corner->change[axis] > turn / SMALL))
 			weakest = passo_path_smaller(weakest, path->axis[axis].acceleration);
 	}
 	return weakest;
@@ -144,23 +147,24 @@ static uint64_t soft_slope(const struct passo_path_planner *path, uint64_t radiu
 }
 
 #ifndef PASSO_WITHOUT_JERK_PATHS
-/* Of a lone corner at a square: what a ramp over it lacks of the slope of a line beside it, in 256ths. What
- * it leaves of the acceleration of an axis before and behind the corner, in all, is for the corner. */
-static uint32_t lacking_over(const struct passo_path_planner *path, const struct passo_path_corner *corner,
-    const int32_t *unit, uint64_t slope, uint64_t square)
+/* Of a lone corner at a square: what a ramp over it lacks of the slopes beside it, in 256ths. What it leaves
+ * of the acceleration of an axis before and behind the corner, in all, is for the corner. */
+static uint8_t lacking_over(const struct passo_path_planner *path, const struct passo_path_corner *corner,
+    const int32_t *unit, const struct passo_path_item *item, uint64_t square)
 {
+	const struct passo_path_item *last = passo_path_item(path, path->added - 1);
 	uint64_t lacks = 0;
 
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		const uint64_t own = path->axis[axis].acceleration, most = own + own / EXCESS;
-		const uint64_t along = peak_of(path, slope, unit, axis);
-		const uint64_t half = passo_mul_div(square, corner->change[axis], corner->over) / 2;
-		const uint64_t left = most > half ? most - half : 0;
+		const uint64_t most = path->axis[axis].acceleration;
+		const uint64_t along = passo_path_larger(peak_of(path, last->slope, path->at.direction, axis),
+		    peak_of(path, item->slope, unit, axis));
+		const uint64_t needed = along + passo_mul_div(square, corner->change[axis], corner->over) / 2;
 
-		if (along > left)
-			lacks = passo_path_larger(lacks, passo_mul_div(along - left, 256, along));
+		if (needed > most)
+			lacks = passo_path_larger(lacks, passo_mul_div(needed - most, 255, along));
 	}
-	return (uint32_t)passo_path_smaller(lacks, 255);
+	return (uint8_t)lacks;
 }
 #endif
 
@@ -173,7 +177,7 @@ uint64_t passo_path_shaped_corner(const struct passo_path_planner *path,
 	const uint64_t radius = radius_of(corner), jerk = jerk_of(path, corner);
 	const uint64_t needed = passo_path_larger(
 	    corner->bends_before ? wanted(last) : 0, corner->bends_behind ? wanted(item) : 0);
-	const uint64_t weakest = weakest_of(path, corner, unit);
+	const uint64_t weakest = weakest_of(path, corner, unit, true);
 	const uint64_t across = passo_mul_div(needed, passo_isqrt64(corner->turn), corner->over);
 	uint32_t quarters = bends ? lacking(across, weakest) : 0;
 	uint64_t most = UINT64_MAX, fastest = UINT64_MAX;
@@ -183,7 +187,8 @@ uint64_t passo_path_shaped_corner(const struct passo_path_planner *path,
 			quarters++;
 		fastest = soft_square(radius, jerk / JERK_PARTS[quarters]);
 		most = soft_slope(path, radius, jerk, passo_path_smaller(fastest, needed),
-		    across > weakest / EXCESS ? weakest : PASSO_PATH_SQUARE_MAX >> 2);
+		    across > weakest / EXCESS ? weakest_of(path, corner, unit, false)
+		                              : PASSO_PATH_SQUARE_MAX >> 2);
 	} else if (soft) {
 		fastest = soft_square(radius, jerk / 2);
 	}
@@ -197,9 +202,7 @@ uint64_t passo_path_shaped_corner(const struct passo_path_planner *path,
 		const uint64_t passed =
 		    passo_path_smaller(square, passo_path_smaller(wanted(last), wanted(item)));
 
-		item->passing = (uint8_t)passo_path_larger(
-		    lacking_over(path, corner, path->at.direction, last->slope, passed),
-		    lacking_over(path, corner, unit, item->slope, passed));
+		item->passing = lacking_over(path, corner, unit, item, passed);
 	}
 #endif
 	return square;

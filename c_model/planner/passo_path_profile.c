@@ -30,11 +30,14 @@ static unsigned put(struct passo_path_part *parts, unsigned count, enum passo_pa
 }
 
 #ifndef PASSO_WITHOUT_ROUNDING
+/* By this part of its square a path may be slower in a valley. */
+#define VALLEY 128u
+
 /* Whether the path passes the corner at the start of an item at the highest speed there, from which it need
  * not come down any further. A ramp that comes down to there ends within a tick. */
 static bool is_valley(const struct passo_path_item *item, uint64_t square)
 {
-	return item->valley && item->reach == item->corner && square + square / 128 >= item->reach;
+	return item->valley && item->reach == item->corner && square + square / VALLEY >= item->reach;
 }
 
 uint64_t passo_path_flat(
@@ -93,10 +96,10 @@ static unsigned half_parts(const struct passo_path_item *item, unsigned half, ui
 
 /* Without the flat ends, of which that behind is given. */
 static unsigned middle_parts(const struct passo_path_planner *path, uint32_t index, uint64_t left,
-    uint64_t behind, uint64_t square, bool level, struct passo_path_part *parts)
+    uint64_t behind, uint64_t square, uint64_t end, bool level, struct passo_path_part *parts)
 {
 	const struct passo_path_item *item = passo_path_item(path, index);
-	const uint64_t end = passo_path_end_square(path, index), half = (uint64_t)item->substeps << 31;
+	const uint64_t half = (uint64_t)item->substeps << 31;
 	const uint64_t second = half > behind ? half - behind : 0;
 	uint64_t top = item->top;
 	unsigned count = 0;
@@ -118,42 +121,61 @@ static unsigned middle_parts(const struct passo_path_planner *path, uint32_t ind
 
 /* With the flat ends. */
 static unsigned all_parts(const struct passo_path_planner *path, uint32_t index, uint64_t left,
-    uint64_t before, uint64_t behind, uint64_t square, bool level, struct passo_path_part *parts)
+    uint64_t before, uint64_t behind, uint64_t square, uint64_t end, bool level,
+    struct passo_path_part *parts)
 {
 	const uint64_t slope = passo_path_item(path, index)->slope;
 
+	behind = passo_path_smaller(behind, left);
 	before = passo_path_smaller(before, left - behind);
 	unsigned count = put(parts, 0, PASSO_PATH_FLAT, before, square, slope);
 	if (left > before + behind)
-		count +=
-		    middle_parts(path, index, left - before - behind, behind, square, level, parts + count);
+		count += middle_parts(
+		    path, index, left - before - behind, behind, square, end, level, parts + count);
 	if (count > 0)
 		square = parts[count - 1].square;
-	return put(parts, count, PASSO_PATH_FLAT, behind,
-	    passo_path_smaller(square, passo_path_end_square(path, index)), slope);
+	return put(parts, count, PASSO_PATH_FLAT, behind, passo_path_smaller(square, end), slope);
 }
+
+#ifndef PASSO_WITHOUT_ROUNDING
+/* Whether the path comes down over all of the rounding of the valley at the end of an item. */
+static bool comes_down(const struct passo_path_item *next, uint64_t left, uint64_t square,
+    const struct passo_path_part *parts, unsigned count)
+{
+	const uint64_t turn = (uint64_t)next->turn << 32;
+	uint64_t length = 0;
+
+	if (left <= turn) /* is within it */
+		return is_valley(next, square);
+	while (count > 0 && parts[count - 1].kind == PASSO_PATH_DOWN)
+		length += parts[--count].length;
+	return length >= turn;
+}
+#endif
 
 unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index, uint64_t left,
     uint64_t square, bool level, struct passo_path_part *parts)
 {
 	const uint64_t passed = ((uint64_t)passo_path_item(path, index)->substeps << 32) - left;
-	const uint64_t end = passo_path_end_square(path, index);
+	uint64_t end = passo_path_end_square(path, index);
 	const uint64_t corner = passed > 0 ? passo_path_passing(path, square) : square;
 	const uint64_t begun = passo_path_flat(path, index, index, corner, true);
 	const uint64_t before = begun > passed ? begun - passed : 0;
 	uint64_t behind = passo_path_flat(path, index + 1, index, end, true);
-	unsigned count =
-	    all_parts(path, index, left, before, passo_path_smaller(behind, left), square, level, parts);
+	unsigned count = all_parts(path, index, left, before, behind, square, end, level, parts);
 #ifndef PASSO_WITHOUT_ROUNDING
-	/* it comes up to the corner, so that is no valley; nor does it need more than at the highest speed
+	const struct passo_path_item *next = passo_path_item(path, index + 1);
+	const bool valley = index + 1 < path->added && is_valley(next, end);
+
+	/* where it comes up to the corner, that is no valley, nor does it need more than at the highest speed
 	 * there */
-	if (parts[count - 1].square < end) {
-		if (behind > 0)
-			count = all_parts(path, index, left, before, 0, square, level, parts);
+	if (valley ? !comes_down(next, left, square, parts, count) : parts[count - 1].square < end) {
+		if (valley)
+			end -= end / VALLEY * 2;
+		count = all_parts(path, index, left, before, 0, square, end, level, parts);
 		behind = passo_path_flat(path, index + 1, index, parts[count - 1].square, false);
 		if (behind > 0)
-			count = all_parts(path, index, left, before, passo_path_smaller(behind, left), square,
-			    level, parts);
+			count = all_parts(path, index, left, before, behind, square, end, level, parts);
 	}
 #endif
 	return count;

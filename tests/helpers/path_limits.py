@@ -10,6 +10,7 @@ from passo.path_rounding import Line
 
 UNLIMITED = 1e30
 NEARLY = 1 - 1e-9
+SMALL = 8  # part of a turn
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,8 @@ def limits_of(lines: Sequence[Line], settings: PathSettings, arcs: bool = True) 
         bends_behind[i] = before + behind < rounded and behind > NEARLY * length[i] / 2
         moved = change > 1e-9
         corner[i] = (acceleration[moved] / change[moved]).min() * over
-        corner[i] = min(corner[i], (jerk[moved].min() * (over / (2 * cosine)) ** 2) ** (2 / 3))
+        part = np.maximum(2 * cosine / SMALL / change[moved], 1)  # an axis that hardly turns is stronger
+        corner[i] = min(corner[i], ((jerk[moved] * part).min() * (over / (2 * cosine)) ** 2) ** (2 / 3))
         jumps = moved & (jump > 0)
         if jumps.any():
             corner[i] = min(corner[i], (jump[jumps] / change[jumps]).min() ** 2)
