@@ -129,7 +129,7 @@ netlist: ## Run all core tests on the synthesized iCE40 netlist.
 coverage: setup ## Measure line and toggle coverage of the RTL; a gap is an error; writes docs/reference/coverage.md.
 	@$(BIN)/python -m cocotb_tests.coverage
 
-firmware: ## Build all images of the STM32F103 and print flash, RAM and stack use; CHIP=c8, CHIP=c8 GRBL=1, CHIP=cb: one of them, MACHINE="..." its options (docs/firmware.md).
+firmware: ## Build all images of the STM32F103 and print flash, RAM and stack use; CHIP=c8|cb [GRBL=1]: one of them, MACHINE="..." its options (docs/firmware.md).
 	@tools/setup.sh firmware
 	@$(if $(CHIP)$(GRBL)$(MACHINE),$(MAKE) -C stm32_bridge/firmware,$(MAKE) -C stm32_bridge/firmware table)
 

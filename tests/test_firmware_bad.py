@@ -9,7 +9,7 @@ import pytest
 from passo.engine import model_engine
 from passo.run import parameters_for
 from passo.toolchain import paths
-from passo_stm32.grbl_board import BOTH_IMAGE, SMALL_IMAGE, GrblBoard, grbl_elf
+from passo_stm32.grbl_board import BOTH_IMAGE, LARGE_IMAGE, SMALL_IMAGE, GrblBoard, grbl_elf
 from passo_stm32.machine import Machine
 
 HZ = 36_000_000  # of the core
@@ -27,10 +27,10 @@ TEXTS = {
 }
 
 
-@pytest.fixture(scope="module", params=[SMALL_IMAGE, BOTH_IMAGE])
+@pytest.fixture(scope="module", params=[SMALL_IMAGE, LARGE_IMAGE, BOTH_IMAGE], ids="_".join)
 def elf(request: pytest.FixtureRequest) -> Path:
     """The images of a machine that needs three axes, inputs and outputs."""
-    folder = paths.build / "tests" / f"firmware_bad_{request.param[:1]}"
+    folder = paths.build / "tests" / "_".join(("firmware_bad", *request.param))
     return grbl_elf(folder, *MACHINE, image=request.param)
 
 
@@ -62,7 +62,7 @@ def test_a_core_of_another_machine(
         machine = Machine(elf, engine)
         machine.wires.pretend = registers
         machine.run(SECONDS)
-        told = f"{name}: {TEXTS[name]}" if "_C" in elf.parent.name else name
+        told = f"{name}: {TEXTS[name]}" if "CHIP=cb" in elf.parent.name else name
         assert machine.output.endswith(f"\r\n[MSG:{told}]\r\n") and "Grbl" not in machine.output
         machine.type("$X\nG0 X1\n$H\n")
         machine.run(SECONDS)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The image with console and grbl, for the STM32F103CB."""
+"""The images for the STM32F103CB: grbl, and grbl with the console."""
 
 import re
 from collections.abc import Iterator
@@ -17,7 +17,7 @@ from passo.run import parameters_for
 from passo.toolchain import paths
 from passo_stm32.board import make_firmware, motions
 from passo_stm32.flash import PAGE
-from passo_stm32.grbl_board import BOTH_IMAGE, GREETING, GrblBoard, grbl_elf
+from passo_stm32.grbl_board import BOTH_IMAGE, GREETING, LARGE_IMAGE, SMALL_IMAGE, GrblBoard, grbl_elf
 from passo_stm32.machine import Machine
 from passo_stm32.processor import FLASH
 
@@ -29,10 +29,23 @@ CONSOLE = "help lists the commands\n"
 SECONDS = 0.5  # until one has become the other
 
 
+IMAGES = [LARGE_IMAGE, BOTH_IMAGE]
+LEFT_OUT = {LARGE_IMAGE: ": no console", BOTH_IMAGE: ""}
+LINES = {LARGE_IMAGE: 36, BOTH_IMAGE: 40}  # of the look-ahead
+
+with_console = pytest.mark.parametrize("image", [BOTH_IMAGE], ids="_".join, indirect=True)
+
+
+@pytest.fixture(scope="module", params=IMAGES, ids="_".join)
+def image(request: pytest.FixtureRequest) -> tuple[str, ...]:
+    """As the makefile calls it."""
+    return request.param
+
+
 @pytest.fixture(scope="module")
-def elf() -> Path:
-    """The image."""
-    return grbl_elf(paths.build / "tests" / "firmware_cb", image=BOTH_IMAGE)
+def elf(image: tuple[str, ...]) -> Path:
+    """The program."""
+    return grbl_elf(paths.build / "tests" / "_".join(("firmware", *image)), image=image)
 
 
 @pytest.fixture
@@ -61,31 +74,33 @@ def typed(board: Machine, line: str, seconds: float = 0.2) -> str:
     return board.output[since:]
 
 
-def test_it_fits_and_the_page_says_how_large_it_is() -> None:
-    """Below 120 KiB; the deepest stack of the one fits beside the data of the other."""
-    said = make_firmware("CHIP=cb")
+def test_it_fits_and_the_page_says_how_large_it_is(image: tuple[str, ...]) -> None:
+    """Below 120 KiB; of the one with both, the deepest stack of the one fits beside the data of the other."""
+    said = make_firmware(*image)
     page = (paths.docs / "firmware.md").read_text(encoding="utf-8")
     sizes = {name: int(size) for name, size in re.findall(r"^(flash|RAM|stack) +(\d+) of", said, re.M)}
     assert sizes["flash"] < CODE
-    row = "| " + " | ".join(f"{size:,}" for size in sizes.values()) + " |"
+    row = " | " + " | ".join(f"{size:,}" for size in sizes.values()) + " |"
     assert row in page, f"docs/firmware.md: {row}"
 
 
-def test_it_says_what_it_is(board: GrblBoard) -> None:
-    """The chip that was found; nothing is left out."""
-    assert board.output == f"\r\n[MSG:Reset by power]\r\n[MSG:STM32F103xB]\r\n\r\n{GREETING}"
-    assert "[OPT:VNM,40,255]" in board.line("$I")
+def test_it_says_what_it_is(image: tuple[str, ...], board: GrblBoard) -> None:
+    """The chip that was found, and what is left out."""
+    chip = f"STM32F103xB{LEFT_OUT[image]}"
+    assert board.output == f"\r\n[MSG:Reset by power]\r\n[MSG:{chip}]\r\n\r\n{GREETING}"
+    assert f"[OPT:VNM,{LINES[image]},255]" in board.line("$I")
+    assert board.line("$CONSOLE") == ("error:3" if image == LARGE_IMAGE else "ok")
 
 
-@pytest.mark.parametrize("image", ["", "GRBL=1"])
-def test_small_images_say_what_they_leave_out(image: str) -> None:
+@pytest.mark.parametrize("speaks_grbl", [False, True])
+def test_small_images_say_what_they_leave_out(speaks_grbl: bool) -> None:
     """On the small chip and on the large one."""
-    folder = paths.build / "tests" / f"firmware_small{image[:1]}"
-    make_firmware(*([image] if image else []), f"OUT={folder}", str(folder / "passo.elf"))
+    folder = paths.build / "tests" / f"firmware_small_{speaks_grbl}"
+    make_firmware(*(SMALL_IMAGE if speaks_grbl else ()), f"OUT={folder}", str(folder / "passo.elf"))
     for size, name in ((None, "STM32F103x8"), (SIZE, "STM32F103xB")):
         machine = Machine(folder / "passo.elf", None, flash_size=size)
         machine.run(0.2)
-        left_out = "no jerk, no axes A B C, no console" if image else "no goto, outputs, encoders"
+        left_out = "no jerk, no axes A B C, no console" if speaks_grbl else "no goto, outputs, encoders"
         assert f"{name}: {left_out}" in machine.output
 
 
@@ -103,6 +118,7 @@ def test_a_chip_that_is_too_small(elf: Path) -> None:
         assert machine.resets == [(0, "power")] and not machine.faults and len(machine.led) > 15
 
 
+@with_console
 def test_one_becomes_the_other(board: GrblBoard) -> None:
     """By a line; what it is outlasts any reset but that of the power. Positions are those of the core."""
     assert board.line("G1 X2 F3000") == "ok"
@@ -121,6 +137,7 @@ def test_one_becomes_the_other(board: GrblBoard) -> None:
     assert board.line("G1 X0 F3000") == "ok"
 
 
+@with_console
 def test_none_of_them_leaves_a_motion(board: GrblBoard) -> None:
     """Both refuse while something moves."""
     assert board.line("G1 X10 F3000") == "ok"
@@ -134,6 +151,7 @@ def test_none_of_them_leaves_a_motion(board: GrblBoard) -> None:
     assert "ok position=1800,0,0,0" in typed(board, "position")
 
 
+@with_console
 def test_the_console_has_what_the_small_one_leaves_out(board: GrblBoard) -> None:
     """Goto, outputs, encoders."""
     as_console(board)

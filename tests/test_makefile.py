@@ -42,7 +42,6 @@ def test_unknown_variables(arguments: tuple[str, ...], said: str) -> None:
         (("MACHINE=-DAXES=3",), "MACHINE needs GRBL=1 or CHIP=cb"),
         (("CHIP=cb", "MACHINE=-DHOME=7"), "MACHINE: unknown definition HOME; did you mean HOMES?"),
         (("CHIP=c9",), "unknown value of CHIP: c9; must be one of c8, cb"),
-        (("CHIP=cb", "GRBL=1"), "CHIP=cb has grbl and the console: GRBL=1 is for CHIP=c8"),
     ],
 )
 def test_unknown_definitions(arguments: tuple[str, ...], said: str) -> None:
@@ -56,6 +55,7 @@ def test_unknown_definitions(arguments: tuple[str, ...], said: str) -> None:
     [
         ("firmware", "GRBL=1", "MACHINE=-DAXES=3 -DPROBE=1"),
         ("firmware", "CHIP=cb", "MACHINE=-DAXES=4"),
+        ("firmware", "CHIP=cb", "GRBL=1", "MACHINE=-DAXES=4"),
         ("synth", "BOARD=hx8k", "AXES=2", "CLOCK=48", "PARTS=inputs"),
         ("report", "ONLY=hx8k", "QUICK=1", "PARTS=1"),
         ("verify", "ONLY=formal axis", "SEED=1", "SCALE=2"),

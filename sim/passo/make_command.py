@@ -15,7 +15,7 @@ from passo_fpga.places import host_pins, places
 from passo_fpga.table import BoardError
 from passo_fpga.tools import ToolError
 from passo_stm32.board import make_firmware
-from passo_stm32.grbl_board import BOTH_IMAGE, SMALL_IMAGE
+from passo_stm32.grbl_board import LARGE_IMAGE, SMALL_IMAGE
 
 from passo.console import stages
 from passo.drives import drives
@@ -35,7 +35,7 @@ FIRMWARE = "firmware"  # folder of its images
 SMALL, LARGE = CHIPS
 CHIP_AXES = {SMALL: 3, LARGE: 6}  # of the G-code
 CHIP_PROFILES = {SMALL: ("linear",), LARGE: ("linear", "jerk")}
-IMAGE = {SMALL: SMALL_IMAGE, LARGE: BOTH_IMAGE}
+IMAGE = {SMALL: SMALL_IMAGE, LARGE: LARGE_IMAGE}
 NOT_BUILT = "  no images: --no-build"
 FAILED_BITSTREAM = "  bitstream  NONE: see above"
 SPI_MHZ = (18, 9)  # of the firmware: the fastest that a core can take, which is a quarter of its clock
@@ -117,7 +117,8 @@ def _images(machine: MachineFile, chosen: Board, path: Path) -> Iterator[str]:
     tell = stages()
     tell("firmware")
     given = " ".join(f"-D{name}={value}" for name, value in definitions(machine).items())
-    said = make_firmware(IMAGE[machine.chip], f"OUT={(path.parent / FIRMWARE).resolve()}", f"MACHINE={given}")
+    to = f"OUT={(path.parent / FIRMWARE).resolve()}"
+    said = make_firmware(*IMAGE[machine.chip], to, f"MACHINE={given}")
     flash = next(line.split(maxsplit=1)[1] for line in said.splitlines() if line.startswith("flash"))
     yield f"  {FIRMWARE}  {flash}"
     bitstream = path.with_suffix(f".{chosen.device.family.suffix}")

@@ -13,18 +13,19 @@ from passo_stm32.processor import FLASH
 from passo_stm32.wires import CorePins
 
 FOLDER = paths.build / "firmware_grbl"
-SMALL_IMAGE, BOTH_IMAGE = "GRBL=1", "CHIP=cb"  # images, as their makefile calls them
+# images, as their makefile calls them
+SMALL_IMAGE, LARGE_IMAGE, BOTH_IMAGE = ("GRBL=1",), ("CHIP=cb", "GRBL=1"), ("CHIP=cb",)
 GREETING = "Grbl 1.1h ['$' for help]\r\n"
 START = 0.5  # seconds until the greeting
 RECEIVED = 128  # bytes that senders count with
 ANSWER = re.compile(r"^(ok|error:\d+)\r\n", re.M)
 
 
-def grbl_elf(folder: Path = FOLDER, *machine: str, image: str = SMALL_IMAGE) -> Path:
+def grbl_elf(folder: Path = FOLDER, *machine: str, image: tuple[str, ...] = SMALL_IMAGE) -> Path:
     """Build an image if it is out of date; `machine` are the definitions of grbl_machine.h, AXES=3 ... ."""
     elf = folder / "passo.elf"
     flags = " ".join(f"-D{definition}" for definition in machine)
-    make_firmware(image, f"OUT={folder}", f"MACHINE={flags}", str(elf))
+    make_firmware(*image, f"OUT={folder}", f"MACHINE={flags}", str(elf))
     return elf
 
 

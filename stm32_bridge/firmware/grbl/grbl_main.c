@@ -10,10 +10,13 @@
 #include "spi.h"
 #include "uart.h"
 
+/* Lines: those of the large chip have more axes and jerk, and rounding where there is no console. */
 #ifdef PASSO_LINEAR_PATHS
-#define LOOK_AHEAD 48u /* lines */
+#define LOOK_AHEAD 48u
+#elif defined PASSO_WITHOUT_ROUNDING
+#define LOOK_AHEAD 40u
 #else
-#define LOOK_AHEAD 40u /* they have more axes, and jerk */
+#define LOOK_AHEAD 36u
 #endif
 #define SLEWS_PER_SECOND 20u /* of hold and stop, from full speed */
 #define DRAIN_VELOCITY 65536u
@@ -22,10 +25,12 @@
 #define SEARCH_MILLISECONDS 100u
 
 /* What the image has not, behind the name of the chip. */
-#ifdef PASSO_LINEAR_PATHS
+#if defined PASSO_LINEAR_PATHS
 #define LEFT_OUT ": no jerk, no axes A B C, no console"
-#else
+#elif defined PASSO_BOTH
 #define LEFT_OUT ""
+#else
+#define LEFT_OUT ": no console"
 #endif
 
 static struct passo_path_item items[LOOK_AHEAD] ONLY_GRBL;
@@ -117,7 +122,7 @@ static void say_error(enum passo_error error)
 {
 	uart_write("[MSG:");
 	uart_write(passo_error_name(error));
-#ifdef PASSO_BOTH /* the texts are those of the console */
+#ifndef PASSO_LINEAR_PATHS /* they do not fit into the small chip */
 	uart_write(": ");
 	uart_write(passo_error_text(error));
 #endif
