@@ -15,7 +15,7 @@
 /* On an arc at a speed v, of a radius r, the ramp that is steepest at t takes 3 v t / r of the jerk: with
  * half of it along the arc, 0.7 are left. UQ0.16. */
 #define ACROSS 15463u
-/* An axis with less than this part of the direction and of its change is none of the curve. */
+/* An axis with less than this part of the direction, or of its change, is hardly one of the curve. */
 #define SMALL 8u
 
 /* The acceleration of an axis in the middle of a ramp with the slope of a line. */
@@ -113,16 +113,13 @@ static void ease(
 		item->slope = passo_path_larger(passo_path_smaller(item->slope, most), 1);
 }
 
-/* The least acceleration of the axes that move along a curve, or also of those that turn in it. */
-static uint64_t weakest_of(const struct passo_path_planner *path, const struct passo_path_corner *corner,
-    const int32_t *unit, bool turning)
+/* The least acceleration of the axes that move along a curve. */
+static uint64_t weakest_of(const struct passo_path_planner *path, const int32_t *unit)
 {
-	const uint64_t turn = passo_isqrt64(corner->turn);
 	uint64_t weakest = PASSO_PATH_SQUARE_MAX >> 2;
 
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		if (passo_path_size32(unit[axis]) >= PASSO_PATH_ONE / SMALL
-		    || (turning && corner->change[axis] > turn / SMALL))
+		if (passo_path_size32(unit[axis]) >= PASSO_PATH_ONE / SMALL)
 			weakest = passo_path_smaller(weakest, path->axis[axis].acceleration);
 	}
 	return weakest;
@@ -177,7 +174,7 @@ uint64_t passo_path_shaped_corner(const struct passo_path_planner *path,
 	const uint64_t radius = radius_of(corner), jerk = jerk_of(path, corner);
 	const uint64_t needed = passo_path_larger(
 	    corner->bends_before ? wanted(last) : 0, corner->bends_behind ? wanted(item) : 0);
-	const uint64_t weakest = weakest_of(path, corner, unit, true);
+	const uint64_t weakest = weakest_of(path, unit);
 	const uint64_t across = passo_mul_div(needed, passo_isqrt64(corner->turn), corner->over);
 	uint32_t quarters = bends ? lacking(across, weakest) : 0;
 	uint64_t most = UINT64_MAX, fastest = UINT64_MAX;
@@ -187,8 +184,7 @@ uint64_t passo_path_shaped_corner(const struct passo_path_planner *path,
 			quarters++;
 		fastest = soft_square(radius, jerk / JERK_PARTS[quarters]);
 		most = soft_slope(path, radius, jerk, passo_path_smaller(fastest, needed),
-		    across > weakest / EXCESS ? weakest_of(path, corner, unit, false)
-		                              : PASSO_PATH_SQUARE_MAX >> 2);
+		    across > weakest / EXCESS ? weakest : PASSO_PATH_SQUARE_MAX >> 2);
 	} else if (soft) {
 		fastest = soft_square(radius, jerk / 2);
 	}
