@@ -98,6 +98,7 @@ struct ahead {
 	uint64_t square; /* the lowest that is allowed */
 	uint64_t slope;  /* the lowest of the lines, whatever their curves */
 	uint64_t up;     /* the steepest that a ramp up over them may be */
+	uint64_t down;   /* the same of a ramp down */
 	uint64_t rest;   /* length to the end of the line at which the path rests; 0: it does not */
 	uint64_t end;    /* the square there */
 	bool open;       /* further lines may raise it */
@@ -109,7 +110,8 @@ struct ahead {
 static struct ahead look_ahead(
     const struct passo_path_planner *path, uint64_t length, enum passo_path_need need)
 {
-	struct ahead ahead = {.square = PASSO_PATH_SQUARE_MAX, .slope = UINT64_MAX, .up = UINT64_MAX};
+	struct ahead ahead = {
+	    .square = PASSO_PATH_SQUARE_MAX, .slope = UINT64_MAX, .up = UINT64_MAX, .down = UINT64_MAX};
 	uint64_t passed = 0;
 
 	for (uint32_t index = path->planned;; index++) {
@@ -130,6 +132,7 @@ static struct ahead look_ahead(
 		ahead.slope = passo_path_smaller(ahead.slope, item->slope);
 		ahead.up = passo_path_smaller(
 		    ahead.up, slope_left(path, item, true, passo_path_smaller(passed, length)));
+		ahead.down = passo_path_smaller(ahead.down, slope_left(path, item, false, 0));
 		ahead.square = passo_path_smaller(ahead.square, item->top);
 		if (beyond > 0) {
 			ahead.square = passo_path_smaller(ahead.square, before);
@@ -245,9 +248,9 @@ static struct passo_path_aim calm_below(
 static struct passo_path_aim brake(const struct passo_path_planner *path, uint64_t least)
 {
 	const uint64_t from = path->velocity;
-	const uint64_t slope = slope_left(path, passo_path_item(path, path->planned), false, 0);
+	uint64_t slope = UINT64_MAX, to = from - from / 4;
 
-	for (uint64_t to = from - from / 4; to > from / 8; to -= from / 4) {
+	while (to > from / 8) {
 		const uint64_t needed = passo_path_ticks_over(path, from - to, slope); /* as for a length */
 		const uint64_t ticks = passo_path_larger(least, needed) + 1;
 		const uint64_t way = passo_path_length_in(path, from + to, ticks);
@@ -256,9 +259,14 @@ static struct passo_path_aim brake(const struct passo_path_planner *path, uint64
 		    look_ahead(path, way + passo_path_length_in(path, 2 * to, next), PASSO_PATH_FULL);
 		const struct passo_path_aim aim = aim_at(path, to, way, ahead.slope);
 
-		if (ahead.rest == 0 && aim.square <= ahead.square && is_below(path, &aim)
-		    && from - to <= passo_path_change(path, passo_path_smaller(slope, ahead.slope), ticks))
+		if (ahead.down
+		    < slope) { /* the longer way of a ramp that is less steep may have more curves */
+			slope = ahead.down;
+			continue;
+		}
+		if (ahead.rest == 0 && aim.square <= ahead.square && is_below(path, &aim))
 			return aim;
+		to -= from / 4;
 	}
 	return (struct passo_path_aim){.length = 0};
 }
