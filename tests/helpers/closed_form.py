@@ -5,7 +5,7 @@ For a motion at rate 1.0 whose pins never make a step wait. Nothing here is shar
 tables come from their formulas, and a substep's clock is a division instead of a sum clock by clock.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from passo.registers import Shape
@@ -49,21 +49,23 @@ class Ramp:
         return min((2 * ONE + self.ticks) // (2 * self.ticks), ONE - 1)
 
 
+Tables = Mapping[int, Sequence[int]]  # of the points of each shape, with the last one, which is 2^16
+
 SHAPES = tuple(Shape)
-TABLES = {shape: loaded_table(shape) for shape in SHAPES if shape != LINEAR}
+TABLES: Tables = {shape: loaded_table(shape) for shape in SHAPES if shape != LINEAR}
 
 
-def shape(number: int, progress: int) -> int:
+def shape(number: int, progress: int, tables: Tables = TABLES) -> int:
     """s (UQ1.24) for a progress (UQ0.49)."""
     if number == LINEAR:
         return (progress + (1 << 24)) >> 25
     k, rest = progress >> 41, progress & (1 << 41) - 1
     f = (rest + (1 << 16)) >> 17
-    point, point_next = TABLES[number][k : k + 2]
+    point, point_next = tables[number][k : k + 2]
     return (point * (SHAPE_ONE - f) + point_next * f + (1 << 15)) >> 16
 
 
-def velocities(ramps: Sequence[Ramp]) -> Iterator[int]:
+def velocities(ramps: Sequence[Ramp], tables: Tables = TABLES) -> Iterator[int]:
     """The velocity of each tick."""
     start = 0
     for ramp in ramps:
@@ -72,17 +74,17 @@ def velocities(ramps: Sequence[Ramp]) -> Iterator[int]:
             u = (2 * tick + 1) * ramp.progress_step
             if ramp.mirror:
                 back = start - ramp.velocity_end
-                yield ramp.velocity_end + (back * shape(ramp.shape, 2 * ONE - 1 - u) >> 24)
+                yield ramp.velocity_end + (back * shape(ramp.shape, 2 * ONE - 1 - u, tables) >> 24)
             else:
-                yield start + ((ramp.velocity_end - start) * shape(ramp.shape, u) >> 24)
+                yield start + ((ramp.velocity_end - start) * shape(ramp.shape, u, tables) >> 24)
         start = ramp.velocity_end
 
 
-def substep_clocks(ramps: Sequence[Ramp], tick_log2: int) -> list[int]:
+def substep_clocks(ramps: Sequence[Ramp], tick_log2: int, tables: Tables = TABLES) -> list[int]:
     """For each substep the number of enabled clocks until the phase carries; the first clock is 1."""
     clocks: list[int] = []
     phase, length = ONE // 4, 1 << tick_log2
-    for tick, velocity in enumerate(velocities(ramps)):
+    for tick, velocity in enumerate(velocities(ramps, tables)):
         first = len(clocks) + 1
         carried = (phase + length * velocity) // ONE + len(clocks) - first + 1
         for k in range(1, carried + 1):

@@ -7,7 +7,7 @@ from typing import Any
 
 from passo.native import ffi
 
-from tests.helpers.closed_form import COSINE, ONE, SHAPES, Line, Ramp, substep_clocks
+from tests.helpers.closed_form import COSINE, ONE, SHAPES, TABLES, Line, Ramp, Tables, substep_clocks
 
 SLOW = ONE // 40  # with the shortest pin timings no step has to wait then, not even for DIR
 
@@ -34,14 +34,16 @@ def to_ramp(ramp: Ramp) -> Any:
     )[0]
 
 
-def distance(ramps: Sequence[Ramp], tick_log2: int = 7) -> int:
+def distance(ramps: Sequence[Ramp], tick_log2: int = 7, tables: Tables = TABLES) -> int:
     """Whole substeps under the ramps."""
-    return len(substep_clocks(ramps, tick_log2))
+    return len(substep_clocks(ramps, tick_log2, tables))
 
 
-def fill(ramps: Sequence[Ramp], shares: Sequence[tuple[int, ...]], tick_log2: int = 7) -> list[Line]:
+def fill(
+    ramps: Sequence[Ramp], shares: Sequence[tuple[int, ...]], tick_log2: int = 7, tables: Tables = TABLES
+) -> list[Line]:
     """As many lines as shares, that together use up the distance; a share is the steps per 100 substeps."""
-    total = distance(ramps, tick_log2)
+    total = distance(ramps, tick_log2, tables)
     lengths = [total // len(shares)] * len(shares)
     lengths[-1] += total - sum(lengths)
     return [
@@ -51,7 +53,7 @@ def fill(ramps: Sequence[Ramp], shares: Sequence[tuple[int, ...]], tick_log2: in
 
 
 def random_motion(
-    rng: random.Random, axes: int, most_lines: int = 9, most_ramps: int = 14
+    rng: random.Random, axes: int, most_lines: int = 9, most_ramps: int = 14, tables: Tables = TABLES
 ) -> tuple[list[Line], list[Ramp]]:
     """A limited number of lines and ramps of all kinds; at least 3 ramps."""
     ramps = []
@@ -64,4 +66,4 @@ def random_motion(
     ramps.append(Ramp(SLOW, 30, COSINE))
     ramps.append(Ramp(0, rng.randint(0, 40), rng.choice(SHAPES), rng.random() < 0.5, last=True))
     shares = [tuple(rng.randint(-100, 100) for _ in range(axes)) for _ in range(rng.randint(1, most_lines))]
-    return fill(ramps, shares), ramps
+    return fill(ramps, shares, tables=tables), ramps

@@ -18,7 +18,7 @@ from passo.link import Link
 from passo.moves import PinTiming
 from passo.registers import Cause, State
 
-from tests.helpers.closed_form import ONE, Line, Ramp, substep_clocks
+from tests.helpers.closed_form import ONE, TABLES, Line, Ramp, Tables, substep_clocks
 from tests.helpers.motions import SLOW, random_motion, to_line, to_ramp
 from verify.mutants.engine_judge import Check
 
@@ -60,6 +60,7 @@ class Motions:
         self.high = [0] * (parameters.channels * parameters.axes)
         self.lacked = [0] * parameters.channels  # substeps drained so far
         self.inverted = {"step": 0, "dir": 0}
+        self.tables: Tables = TABLES
         self.events = engine.drain()
 
     def set_up(self) -> None:
@@ -174,7 +175,9 @@ class Motions:
         """Any motion that fits into the queues."""
         places = 1 << self.parameters.line_queue_log2
         while True:
-            lines, ramps = random_motion(self.rng, self.parameters.axes, min(6, places), most_ramps)
+            lines, ramps = random_motion(
+                self.rng, self.parameters.axes, min(6, places), most_ramps, self.tables
+            )
             if sum(ramp.ticks for ramp in ramps) < 200 and all(line.substeps for line in lines):
                 return lines, ramps
 

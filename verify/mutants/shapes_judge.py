@@ -1,18 +1,20 @@
 # SPDX-License-Identifier: MIT
-"""Shaped ramps as judge: motions of all channels together, which share the tables; each step on its clock."""
+"""Shaped ramps as judge: motions of all channels together, which share the tables, whatever these hold."""
 
 import random
 
 from passo import registers as r
 from passo.build import Parameters
 from passo.engine import Engine
-from passo.registers import Cause
+from passo.registers import Cause, Shape
 
 from tests.helpers.closed_form import substep_clocks
 from verify.mutants.engine_judge import Check
 from verify.mutants.motions_judge import Motions
 
 ROUNDS = 5
+POINTS, WORDS = 256, 32  # of a shape; of a frame
+SHAPE_END = 1 << 16
 MODULES = (
     *("passo_tables", "passo_interpolate", "passo_profile", "passo_path", "passo_core", "passo_positions"),
     *("passo_ramp", "passo_ramp_numbers", "passo_ramp_queue", "passo_ramp_schedule", "passo_ramp_strobes"),
@@ -22,6 +24,19 @@ MODULES = (
 
 class Shapes(Motions):
     """A core whose channels move together."""
+
+    def load(self) -> None:
+        """Write any other shapes."""
+        addresses = {
+            Shape.COSINE: r.ADDRESS_COSINE_BASE,
+            Shape.SIGMOID: r.ADDRESS_SIGMOID_BASE,
+            Shape.EASE: r.ADDRESS_EASE_BASE,
+        }
+        loaded = {shape: sorted(self.rng.choices(range(SHAPE_END), k=POINTS)) for shape in addresses}
+        for shape, address in addresses.items():
+            for k in range(0, POINTS, WORDS):
+                self.link.write(address + k, *loaded[shape][k : k + WORDS])
+        self.tables = {shape: [*points, SHAPE_END] for shape, points in loaded.items()}
 
     def together(self) -> None:
         """Any motion on each channel; they begin when they are prepared."""
@@ -37,7 +52,7 @@ class Shapes(Motions):
         for channel, (lines, ramps) in zip(self.channels, drawn, strict=True):
             begin, end = self.runs(channel)
             assert end - begin == sum(ramp.ticks for ramp in ramps) * self.tick, "the profile lasts"
-            clocks = substep_clocks(ramps, self.tick.bit_length() - 1)
+            clocks = substep_clocks(ramps, self.tick.bit_length() - 1, self.tables)
             self.check_steps(channel, lines, [begin + n for n in clocks])
             self.check_positions(channel, [0] * self.parameters.axes)
         for channel in self.channels:
@@ -52,8 +67,10 @@ def check(engine: Engine, parameters: Parameters, rng: random.Random) -> None:
     """
     shapes = Shapes(engine, parameters, rng)
     shapes.set_up()
-    for _ in range(ROUNDS):
+    for number in range(ROUNDS):
         shapes.together()
+        if number % 2 == 0:
+            shapes.load()
 
 
 CHECK = Check("shapes", "motions", check, MODULES)
