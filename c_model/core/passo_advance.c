@@ -4,24 +4,22 @@
  * While a profile runs, a clock is quiet if it only changes counters and sums whose later values can be
  * computed directly: the tick counter, the phase, e of each DDA, the substep count of the line, timers. It is
  * not quiet if a step is made, a line or a tick ends, a ramp is chosen, or an input changes.
+ *
+ * Two groups of units need not be quiet, since they mostly act on each other: the link with the SPI slave,
+ * and a running profile with its axes. They are executed by their own functions, while the rest is skipped.
  */
 #include "passo_advance.h"
+
+#include <stddef.h>
 
 #include "passo_registers_core.h"
 
 /* Latency from a slew tick to the change of rate; see passo_timescale_clock(). */
 enum { SLEW_CLOCKS = 6 };
 
-static bool link_side_quiet(const struct passo_core *core, const struct passo_inputs *inputs)
+static bool pins_quiet(const struct passo_core *core, const struct passo_inputs *inputs)
 {
-	const uint8_t selected = inputs->spi_cs_n ? 0 : 7;
-	const uint8_t toggled = core->spi.half_toggle ? 7 : 0;
-	const uint8_t synced = inputs->sync ? 7 : 0;
-
-	return PASSO_SAME_INPUTS(inputs, &core->inputs) && core->spi.select_sync == selected
-	    && core->spi.toggle_sync == toggled && core->sync_q == synced
-	    && core->link.status == passo_registers_status(core) && !core->response.claim
-	    && core->response.refusal == 0u && core->response.read_data == 0u && !core->response.reads
+	return !inputs->rst && core->sync_q == (inputs->sync ? 7 : 0)
 	    && core->outputs.irq == passo_registers_any_stopped(core);
 }
 
@@ -37,67 +35,191 @@ static struct passo_channel_inputs inputs_of(
 	    .machine = &core->machine,
 	};
 
-	passo_encoders_pins(&made, inputs, channel);
-	passo_core_take_pins(core, channel, inputs, &made);
+	if (core->parameters.encoders != 0u)
+		passo_encoders_pins(&made, inputs, channel);
+	if (core->parameters.inputs != 0u)
+		passo_core_take_pins(core, channel, inputs, &made);
 	return made;
 }
 
-uint64_t passo_core_advance(struct passo_core *core, const struct passo_inputs *inputs, uint64_t limit)
+/* The link side before a run, to go back to. */
+struct before {
+	struct passo_spi spi;
+	struct passo_link link;
+	struct passo_inputs inputs;
+	uint64_t clock;
+	uint32_t received;
+};
+
+static struct before look_back(const struct passo_core *core, const struct passo_shift *shift)
+{
+	return (struct before){.spi = core->spi,
+	    .link = core->link,
+	    .inputs = core->inputs,
+	    .clock = shift ? shift->clock : 0u,
+	    .received = shift ? *passo_shift_word(shift) : 0u};
+}
+
+static void go_back(struct passo_core *core, struct passo_shift *shift, const struct before *before)
+{
+	core->spi = before->spi;
+	core->link = before->link;
+	core->inputs = before->inputs;
+	core->outputs.spi_miso = core->spi.miso;
+	if (shift) {
+		shift->clock = before->clock;
+		*passo_shift_word(shift) = before->received;
+	}
+}
+
+/* The first channel with a profile that runs at full rate; the number of channels if there is none. */
+static unsigned moving_channel(const struct passo_core *core)
+{
+	unsigned i = 0;
+
+	while (i < core->parameters.channels && !passo_advance_profile_counts(&core->channel[i]))
+		i++;
+	return i;
+}
+
+/* Clocks for which all is quiet but the link side and the profile of the moving channel. */
+static uint64_t rest_quiet(
+    const struct passo_core *core, const struct passo_inputs *inputs, unsigned moving, uint64_t limit)
 {
 	const uint32_t tick = 1u << core->parameters.tick_log2;
 	const uint64_t clocks_to_slew = core->slew_tick ? 0u : tick - core->slew_count;
-	const unsigned channels = core->parameters.channels;
-	unsigned moving = channels; /* the first moving channel; `channels`: none */
-	uint64_t clocks = passo_advance_least(limit, passo_link_quiet(&core->link));
+	uint64_t clocks = limit;
 
-	if (clocks == 0u || inputs->rst || !link_side_quiet(core, inputs))
-		return 0;
 	if (core->parameters.inputs != 0u)
 		clocks = passo_advance_least(
 		    clocks, passo_machine_quiet(&core->machine, inputs, passo_core_any_moving(core)));
-	if (clocks == 0u)
-		return 0;
-	for (unsigned i = 0; i < channels; i++) {
+	for (unsigned i = 0; i < core->parameters.channels && clocks != 0u; i++) {
 		const struct passo_channel_inputs channel_inputs = inputs_of(core, i, inputs);
-		if (moving == channels && passo_advance_profile_counts(&core->channel[i])) {
-			moving = i;
-			continue;
-		}
-		clocks = passo_advance_least(clocks,
-		    passo_advance_channel_quiet(&core->channel[i], &channel_inputs, clocks_to_slew, clocks));
-		if (clocks == 0u)
-			return 0;
-	}
-	if (moving != channels) {
-		const struct passo_channel_inputs channel_inputs = inputs_of(core, moving, inputs);
-		struct passo_channel *channel = &core->channel[moving];
-		const uint64_t quiet = passo_advance_least(
-		    clocks, passo_advance_surroundings_quiet(channel, &channel_inputs, clocks_to_slew));
+		const struct passo_channel *channel = &core->channel[i];
+
 		/* other moving channels are only skipped within their ticks */
-		uint64_t skipped = passo_advance_skip_ticks(channel, &channel_inputs, quiet);
-		if (skipped == 0u) {
-			skipped =
-			    quiet == 0u ? 0u : passo_advance_profile_quiet(channel, &core->parameters, quiet);
-			if (skipped == 0u)
-				return 0;
-			passo_advance_channel_skip(channel, skipped);
-		}
-		clocks = skipped;
+		clocks = passo_advance_least(clocks,
+		    i == moving
+			? passo_advance_surroundings_quiet(channel, &channel_inputs, clocks_to_slew)
+			: passo_advance_channel_quiet(channel, &channel_inputs, clocks_to_slew, clocks));
 	}
-	for (unsigned i = 0; i < channels; i++)
+	return clocks;
+}
+
+static void skip_rest(struct passo_core *core, unsigned moving, uint64_t clocks)
+{
+	const uint32_t tick = 1u << core->parameters.tick_log2;
+
+	for (unsigned i = 0; i < core->parameters.channels; i++)
 		if (i != moving)
 			passo_advance_channel_skip(&core->channel[i], clocks);
-
 	core->slew_tick = (core->slew_count + clocks - 1u) % tick == tick - 1u;
 	core->slew_count = (uint32_t)((core->slew_count + clocks) % tick);
 	/* a skipped slew tick may still be in progress */
-	for (unsigned i = 0; i < channels; i++)
+	for (unsigned i = 0; i < core->parameters.channels; i++)
 		if (core->channel[i].motion.state == PASSO_STATE_RUN && core->slew_count <= SLEW_CLOCKS
 		    && core->slew_count <= clocks)
 			core->channel[i].timescale.after = (uint8_t)core->slew_count;
 	if (core->parameters.inputs != 0u)
 		passo_machine_skip(&core->machine, clocks);
-	passo_link_skip(&core->link, clocks);
-	core->tables.slot = (uint8_t)((core->tables.slot + clocks) % (2u * channels));
+	core->tables.slot = (uint8_t)((core->tables.slot + clocks) % (2u * core->parameters.channels));
+}
+
+/* The link side goes first: how far is known only then. If the channel does not follow it goes back. */
+static uint64_t advance(struct passo_core *core, const struct passo_inputs *inputs, struct passo_shift *shift,
+    uint64_t limit, bool *changed)
+{
+	const unsigned moving = moving_channel(core);
+	uint64_t clocks;
+
+	if (!pins_quiet(core, inputs) || !passo_advance_link_is_alone(core))
+		return 0;
+	clocks = rest_quiet(core, inputs, moving, limit);
+	if (clocks == 0u)
+		return 0;
+	if (moving == core->parameters.channels) {
+		clocks = passo_advance_link(core, inputs, shift, clocks);
+	} else {
+		const struct before before = look_back(core, shift);
+		const struct passo_channel_inputs channel_inputs = inputs_of(core, moving, inputs);
+		const uint64_t most = passo_advance_link(core, inputs, shift, clocks);
+
+		clocks = passo_advance_run(&core->channel[moving], &channel_inputs, most, changed);
+		if (clocks != most) {
+			go_back(core, shift, &before);
+			passo_advance_link(core, inputs, shift, clocks);
+		}
+	}
+	if (clocks != 0u)
+		skip_rest(core, moving, clocks);
+	return clocks;
+}
+
+uint64_t passo_core_advance(struct passo_core *core, const struct passo_inputs *inputs, uint64_t limit)
+{
+	const uint64_t clocks = advance(core, inputs, NULL, limit, NULL);
+
+	if (clocks != 0u)
+		core->inputs = *inputs;
+	return clocks;
+}
+
+uint64_t passo_core_run(struct passo_core *core, const struct passo_inputs *inputs, uint64_t limit)
+{
+	bool changed = false;
+	const uint64_t clocks = advance(core, inputs, NULL, limit, &changed);
+
+	if (clocks == 0u) {
+		passo_core_clock(core, inputs);
+		return 1;
+	}
+	core->inputs = *inputs;
+	if (changed)
+		passo_core_gather_outputs(core);
+	return clocks;
+}
+
+/* Clocks of the present word that are left, or the limit. */
+static uint64_t clocks_of_word(const struct passo_shift *shift, uint64_t limit)
+{
+	const uint64_t bit = 2u * (uint64_t)shift->half_period, word = 32u * bit;
+	const uint64_t left =
+	    passo_advance_least(word - shift->clock % word, bit * shift->bits - shift->clock);
+
+	return passo_advance_least(limit, left);
+}
+
+static void take_pins(struct passo_core *core, struct passo_inputs *inputs)
+{
+	inputs->spi_sclk = core->inputs.spi_sclk;
+	inputs->spi_mosi = core->inputs.spi_mosi;
+	core->inputs = *inputs;
+}
+
+uint64_t passo_core_shift(
+    struct passo_core *core, struct passo_inputs *inputs, struct passo_shift *shift, uint64_t limit)
+{
+	const uint64_t clocks = advance(core, inputs, shift, clocks_of_word(shift, limit), NULL);
+
+	if (clocks != 0u)
+		take_pins(core, inputs);
+	return clocks;
+}
+
+uint64_t passo_core_exchange(
+    struct passo_core *core, struct passo_inputs *inputs, struct passo_shift *shift, uint64_t limit)
+{
+	bool changed = false;
+	const uint64_t clocks = advance(core, inputs, shift, clocks_of_word(shift, limit), &changed);
+
+	if (clocks == 0u) {
+		passo_shift_pins(shift, inputs, core->spi.miso);
+		passo_core_clock(core, inputs);
+		shift->clock++;
+		return 1;
+	}
+	take_pins(core, inputs);
+	if (changed)
+		passo_core_gather_outputs(core);
 	return clocks;
 }

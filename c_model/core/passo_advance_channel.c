@@ -7,13 +7,13 @@
  */
 #include "passo_advance.h"
 
-/* Latency from phase to DDA. */
-enum { PIPELINE_CLOCKS = 4 };
-
 /* By then a ramp has always computed the next velocity and advanced. */
 static const uint32_t RAMP_DONE_TICK_COUNT = 100;
 
 static const uint64_t PHASE_MASK = PASSO_ONE_Q48 - 1u;
+
+/* Of a jump, so that their phase has 63 bits. */
+static const uint64_t SUBSTEPS_MAX = (1u << 15) - 2u;
 
 /* State of path, line and DDAs with all substeps completed. */
 struct progress {
@@ -99,17 +99,17 @@ static int64_t sum_phase(struct progress *progress, uint64_t velocity, uint64_t 
 }
 
 /* Refills the pipeline with the substeps of the last clocks; the velocity must have been constant for
- * PIPELINE_CLOCKS clocks. */
+ * PASSO_ADVANCE_PIPELINE clocks. */
 static void put_back(struct passo_channel *channel, const struct progress *progress)
 {
 	struct passo_path *path = &channel->path;
 	struct passo_line_unit *line = &channel->line;
 	const uint64_t velocity = velocity_of(path);
 	uint64_t phase = progress->phase;
-	bool carry[PIPELINE_CLOCKS]; /* of the last clock, the one before it, ... */
+	bool carry[PASSO_ADVANCE_PIPELINE]; /* of the last clock, the one before it, ... */
 	uint64_t phase_before_last = 0;
 
-	for (unsigned i = 0; i < PIPELINE_CLOCKS; i++) {
+	for (unsigned i = 0; i < PASSO_ADVANCE_PIPELINE; i++) {
 		carry[i] = phase < velocity;
 		phase = (phase - velocity) & PHASE_MASK;
 		if (i == 0u)
@@ -165,15 +165,18 @@ uint64_t passo_advance_profile_quiet(
 			    clocks, (((allowed + 1u) << 48) - 1u - progress.phase) / velocity);
 		}
 	}
-	return clocks < PIPELINE_CLOCKS ? 0u : clocks;
+	return clocks < PASSO_ADVANCE_PIPELINE ? 0u : clocks;
 }
 
 uint64_t passo_advance_channel_quiet(const struct passo_channel *channel,
     const struct passo_channel_inputs *inputs, uint64_t clocks_to_slew, uint64_t limit)
 {
-	const uint64_t clocks =
+	uint64_t clocks =
 	    passo_advance_least(limit, passo_advance_surroundings_quiet(channel, inputs, clocks_to_slew));
 
+	clocks = passo_advance_least(clocks, passo_advance_ramp_quiet(&channel->ramp));
+	for (unsigned i = 0; i < channel->axes && clocks != 0u; i++)
+		clocks = passo_advance_least(clocks, passo_advance_axis_quiet(channel, i));
 	if (clocks == 0u)
 		return 0;
 	if (passo_advance_profile_counts(channel))
@@ -181,11 +184,8 @@ uint64_t passo_advance_channel_quiet(const struct passo_channel *channel,
 	return passo_advance_slots_empty(channel) ? clocks : 0u;
 }
 
-/* Timers and waits that run independently of the profile. */
-static void skip_surroundings(struct passo_channel *channel, uint64_t clocks)
+void passo_advance_surroundings_skip(struct passo_channel *channel, uint64_t clocks)
 {
-	for (unsigned i = 0; i < channel->axes; i++)
-		passo_axis_skip(&channel->axis[i], clocks);
 	passo_positions_skip(&channel->positions, clocks);
 	passo_inputs_skip(&channel->inputs, clocks);
 	if (channel->has_outputs)
@@ -194,12 +194,11 @@ static void skip_surroundings(struct passo_channel *channel, uint64_t clocks)
 		passo_positions_skip(&channel->encoders.positions, clocks);
 }
 
-void passo_advance_channel_skip(struct passo_channel *channel, uint64_t clocks)
+void passo_advance_profile_skip(struct passo_channel *channel, uint64_t clocks)
 {
 	struct passo_ramp_unit *ramp = &channel->ramp;
 	struct progress progress;
 
-	skip_surroundings(channel, clocks);
 	ramp->unready = !ramp->ready;
 	if (ramp->step != PASSO_RAMP_CHOOSE)
 		ramp->wait -= (uint32_t)clocks;
@@ -212,36 +211,89 @@ void passo_advance_channel_skip(struct passo_channel *channel, uint64_t clocks)
 	put_back(channel, &progress);
 }
 
-uint64_t passo_advance_skip_ticks(
-    struct passo_channel *channel, const struct passo_channel_inputs *inputs, uint64_t limit)
+void passo_advance_channel_skip(struct passo_channel *channel, uint64_t clocks)
+{
+	for (unsigned i = 0; i < channel->axes; i++)
+		passo_axis_skip(&channel->axis[i], clocks);
+	passo_advance_surroundings_skip(channel, clocks);
+	passo_advance_profile_skip(channel, clocks);
+}
+
+/* Whether the velocity is that of all ticks that are left of the ramp. */
+static bool is_constant(const struct passo_ramp_unit *ramp, uint64_t velocity)
+{
+	return ramp->v_start == velocity && ramp->v_end == velocity && ramp->velocity_next == velocity;
+}
+
+/* Ticks that are quiet even at the highest velocity that the ramp can have in them, at most `most`. */
+static uint64_t ticks_to_event(
+    const struct passo_channel *channel, const struct progress *progress, uint64_t most, uint32_t tick_log2)
+{
+	const struct passo_ramp_unit *ramp = &channel->ramp;
+	uint64_t velocity = velocity_of(&channel->path), substeps = SUBSTEPS_MAX;
+
+	velocity = velocity < ramp->v_start ? ramp->v_start : velocity;
+	velocity = velocity < ramp->v_end ? ramp->v_end : velocity;
+	if (velocity == 0u)
+		return most;
+	if (channel->line.active)
+		substeps = passo_advance_least(substeps, substeps_to_event(channel, progress));
+	return passo_advance_least(
+	    most, (((substeps + 1u) << 48) - 1u - progress->phase) / (velocity << tick_log2));
+}
+
+/* Integrates the velocity over ticks, from a place in one to the same place in another; returns the substeps.
+ */
+static int64_t sum_ticks(struct passo_channel *channel, struct progress *progress, uint64_t ticks,
+    const struct passo_channel_inputs *inputs)
 {
 	struct passo_ramp_unit *ramp = &channel->ramp;
 	struct passo_path *path = &channel->path;
 	const uint64_t tick = UINT64_C(1) << inputs->parameters->tick_log2;
 	const uint64_t place = ramp->tick_count;
-	struct progress progress;
-	uint64_t clocks = 0;
+	uint64_t velocity = velocity_of(path);
+	uint64_t sum = progress->phase;
 
-	if (!passo_advance_profile_counts(channel) || ramp->step != PASSO_RAMP_CHOOSE || ramp->unready
-	    || !ramp->loaded || place < RAMP_DONE_TICK_COUNT || channel->ramp_queue.now_pending
+	if (is_constant(ramp, velocity)) {
+		sum += velocity * tick * ticks;
+		passo_ramp_hold(ramp, (uint32_t)ticks);
+	} else {
+		for (uint64_t i = 0; i < ticks; i++) {
+			sum += velocity * (tick - place) + ramp->velocity_next * place;
+			velocity = ramp->velocity_next;
+			passo_ramp_make_velocity(ramp, inputs->tables);
+		}
+		path->velocity_low = (uint32_t)(velocity & 0xFFFFFFu);
+		path->velocity_high = (uint32_t)(velocity >> 24);
+	}
+	progress->phase = sum & PHASE_MASK;
+	return (int64_t)(sum >> 48);
+}
+
+uint64_t passo_advance_skip_ticks(
+    struct passo_channel *channel, const struct passo_channel_inputs *inputs, uint64_t limit)
+{
+	struct passo_ramp_unit *ramp = &channel->ramp;
+	const uint32_t tick_log2 = inputs->parameters->tick_log2;
+	struct progress progress;
+	uint64_t skipped = 0;
+
+	if (limit >> tick_log2 == 0u || !passo_advance_profile_counts(channel)
+	    || ramp->step != PASSO_RAMP_CHOOSE || ramp->unready || !ramp->loaded
+	    || ramp->tick_count < RAMP_DONE_TICK_COUNT || channel->ramp_queue.now_pending
 	    || !take_to_end(channel, &progress))
 		return 0;
 	/* stop before the last tick of the ramp, which takes the ramp from the queue */
-	while (ramp->ticks > 1u && clocks + tick <= limit) {
-		struct progress then = progress;
-		int64_t substeps = sum_phase(&then, velocity_of(path), tick - place);
-		substeps += sum_phase(&then, ramp->velocity_next, place);
-		if (!count_substeps(channel, &then, substeps))
+	while (ramp->ticks > 1u && skipped < limit >> tick_log2) {
+		const uint64_t most = passo_advance_least(ramp->ticks - 1u, (limit >> tick_log2) - skipped);
+		const uint64_t ticks = ticks_to_event(channel, &progress, most, tick_log2);
+
+		if (ticks == 0u)
 			break;
-		progress = then;
-		path->velocity_low = (uint32_t)(ramp->velocity_next & 0xFFFFFFu);
-		path->velocity_high = (uint32_t)(ramp->velocity_next >> 24);
-		passo_ramp_make_velocity(ramp, inputs->tables);
-		clocks += tick;
+		count_substeps(channel, &progress, sum_ticks(channel, &progress, ticks, inputs));
+		skipped += ticks;
 	}
-	if (clocks != 0u) {
-		skip_surroundings(channel, clocks);
+	if (skipped != 0u)
 		put_back(channel, &progress);
-	}
-	return clocks;
+	return skipped << tick_log2;
 }

@@ -14,7 +14,7 @@ static bool lines_settled(const struct passo_channel *channel, const struct pass
 	const struct passo_line_queue *queue = &channel->line_queue;
 	const struct passo_line *current = &queue->lines[queue->current_line];
 	const unsigned depth = 1u << parameters->line_queue_log2;
-	const unsigned used = used_places(queue->write_line, queue->next_line, depth);
+	const unsigned used = used_places(queue->write_end, queue->next_line, depth);
 
 	for (unsigned i = 0; i < channel->axes; i++)
 		if (queue->steps[i] != current->steps[i])
@@ -22,17 +22,19 @@ static bool lines_settled(const struct passo_channel *channel, const struct pass
 	if (queue->output_word != queue->output_words[queue->current_line])
 		return false;
 	return queue->room == depth - used - (queue->has_place ? 1u : 0u)
-	    && queue->full == (queue->room == queue->checked) && queue->next_valid == (used != 0u)
+	    && queue->full == (queue->room == queue->checked)
+	    && queue->next_valid == (queue->write_line != queue->next_line)
 	    && queue->directions == current->directions;
 }
 
 static bool ramps_settled(const struct passo_ramp_queue *queue, const struct passo_parameters *parameters)
 {
 	const unsigned depth = 1u << parameters->ramp_queue_log2;
-	const unsigned used = used_places(queue->write_ramp, queue->read_ramp, depth);
+	const unsigned used = used_places(queue->write_end, queue->read_ramp, depth);
 
 	return !queue->write_low && queue->room == depth - used
-	    && queue->full == (queue->room == queue->checked) && queue->valid == (used != 0u);
+	    && queue->full == (queue->room == queue->checked)
+	    && queue->valid == (queue->write_ramp != queue->read_ramp);
 }
 
 static bool commands_settled(const struct passo_channel *channel, const struct passo_bus *bus)
@@ -84,13 +86,21 @@ static uint64_t timescale_quiet(const struct passo_channel *channel, bool moving
 	         : clocks_to_slew;
 }
 
-static uint64_t ramp_quiet(const struct passo_ramp_unit *ramp)
+uint64_t passo_advance_ramp_quiet(const struct passo_ramp_unit *ramp)
 {
 	if (ramp->take_now || ramp->dry || ramp->step == PASSO_RAMP_TAKE)
 		return 0;
 	if (ramp->step == PASSO_RAMP_CHOOSE)
 		return !ramp->ready && !ramp->ends_next ? 0u : UINT64_MAX;
 	return ramp->wait - 1u;
+}
+
+uint64_t passo_advance_axis_quiet(const struct passo_channel *channel, unsigned axis)
+{
+	const bool direction = ((uint32_t)channel->line.directions >> axis & 1u) != 0u;
+	const uint32_t clocks = passo_axis_quiet(&channel->axis[axis], direction);
+
+	return clocks == UINT32_MAX ? UINT64_MAX : clocks;
 }
 
 /* At rest, nothing is about to start. In a motion, the running pin is high and nothing is about to stop. */
@@ -154,20 +164,12 @@ uint64_t passo_advance_surroundings_quiet(
 	const bool moving = channel->motion.state == PASSO_STATE_RUN;
 
 	if (!motion_settled(channel, inputs) || !rest_settled(channel)
-	    || !outputs_settled(channel, inputs->bus) || channel->positions.snapshot_waits
-	    || !commands_settled(channel, inputs->bus) || line->load_start || line->load_start_q
-	    || line->underrun || !ramps_settled(&channel->ramp_queue, inputs->parameters)
+	    || !outputs_settled(channel, inputs->bus) || !commands_settled(channel, inputs->bus)
+	    || line->load_start || line->load_start_q || line->underrun
+	    || !ramps_settled(&channel->ramp_queue, inputs->parameters)
 	    || !lines_settled(channel, inputs->parameters) || !passo_encoders_quiet(channel, inputs))
 		return 0;
-	uint64_t clocks = passo_inputs_quiet(channel, inputs);
-	if (clocks == 0u)
-		return 0;
-	clocks = passo_advance_least(clocks, passo_advance_least(ramp_quiet(&channel->ramp),
-						 timescale_quiet(channel, moving, clocks_to_slew)));
-	for (unsigned i = 0; i < channel->axes && clocks != 0u; i++) {
-		const uint32_t quiet =
-		    passo_axis_quiet(&channel->axis[i], (line->directions >> i & 1u) != 0u);
-		clocks = quiet == UINT32_MAX ? clocks : passo_advance_least(clocks, quiet);
-	}
-	return clocks;
+	const uint64_t clocks = passo_advance_least(
+	    passo_inputs_quiet(channel, inputs), passo_positions_quiet(&channel->positions));
+	return passo_advance_least(clocks, timescale_quiet(channel, moving, clocks_to_slew));
 }

@@ -30,7 +30,7 @@ void passo_core_estop(const struct passo_core *core, bool estop_n, struct passo_
 	}
 }
 
-static void gather_outputs(struct passo_core *core)
+void passo_core_gather_outputs(struct passo_core *core)
 {
 	struct passo_outputs *outputs = &core->outputs;
 
@@ -71,7 +71,7 @@ bool passo_core_reset(struct passo_core *core, const struct passo_parameters *pa
 	memcpy(core->tables.points, passo_shapes, sizeof core->tables.points);
 	for (unsigned i = 0; i < parameters->channels; i++)
 		passo_channel_reset(&core->channel[i], parameters, (uint8_t)i);
-	gather_outputs(core);
+	passo_core_gather_outputs(core);
 	return true;
 }
 
@@ -119,7 +119,7 @@ static struct passo_response late_answer(const struct passo_core *core)
 	return response;
 }
 
-static bool any_incomplete(const struct passo_core *core)
+bool passo_core_any_incomplete(const struct passo_core *core)
 {
 	for (unsigned i = 0; i < core->parameters.channels; i++)
 		if (passo_channel_incomplete(&core->channel[i]))
@@ -127,7 +127,7 @@ static bool any_incomplete(const struct passo_core *core)
 	return false;
 }
 
-static bool any_busy(const struct passo_core *core)
+bool passo_core_any_busy(const struct passo_core *core)
 {
 	for (unsigned i = 0; i < core->parameters.channels; i++)
 		if (passo_channel_busy(&core->channel[i]))
@@ -168,8 +168,8 @@ static void clock_all(struct passo_core *core, const struct passo_inputs *inputs
 	    .half = core->spi.half,
 	    .status = passo_registers_status(core),
 	    .response = late_answer(core),
-	    .incomplete = any_incomplete(core),
-	    .busy = any_busy(core),
+	    .incomplete = passo_core_any_incomplete(core),
+	    .busy = passo_core_any_busy(core),
 	};
 	const struct passo_bus bus = core->link.bus;
 	const struct passo_rule rule =
@@ -247,7 +247,7 @@ void passo_core_clock(struct passo_core *core, const struct passo_inputs *inputs
 		clock_in_reset(core, inputs);
 	else
 		clock_all(core, inputs);
-	gather_outputs(core);
+	passo_core_gather_outputs(core);
 }
 
 const struct passo_outputs *passo_core_outputs(const struct passo_core *core)

@@ -39,12 +39,14 @@ void passo_core_clock(struct passo_core *core, const struct passo_inputs *inputs
  * calls of passo_core_clock(). */
 uint64_t passo_core_advance(struct passo_core *core, const struct passo_inputs *inputs, uint64_t limit);
 
-/* Like passo_core_advance(), during an SPI transfer: skips at most `limit` clocks in which no output pin
- * except MISO changes. `inputs` has the levels of the previous clock and is updated to the last skipped one.
- */
+/* Executes at least one and at most `limit` clocks with constant inputs, the last of them the first one in
+ * which an output pin changes. Returns their number. */
+uint64_t passo_core_run(struct passo_core *core, const struct passo_inputs *inputs, uint64_t limit);
+
+/* The same two during an SPI transfer, for output pins except MISO. `inputs` has the levels of the previous
+ * clock and is updated to the last one executed. */
 uint64_t passo_core_shift(
     struct passo_core *core, struct passo_inputs *inputs, struct passo_shift *shift, uint64_t limit);
-/* The same, or one clock if none can be skipped. */
 uint64_t passo_core_exchange(
     struct passo_core *core, struct passo_inputs *inputs, struct passo_shift *shift, uint64_t limit);
 

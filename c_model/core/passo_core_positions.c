@@ -41,6 +41,11 @@ void passo_positions_clock(struct passo_positions *positions, const uint32_t val
 	positions->slot = (positions->slot + 1u) % ROUND_CLOCKS;
 }
 
+uint64_t passo_positions_quiet(const struct passo_positions *positions)
+{
+	return positions->snapshot_waits ? ROUND_CLOCKS - 1u - positions->slot : UINT64_MAX;
+}
+
 void passo_positions_skip(struct passo_positions *positions, uint64_t clocks)
 {
 	if (clocks >= (uint64_t)ROUND_CLOCKS - positions->slot)

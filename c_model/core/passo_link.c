@@ -28,11 +28,11 @@ uint64_t passo_link_quiet(const struct passo_link *link)
 {
 	const struct passo_bus *bus = &link->bus;
 
-	if (link->answer_due || link->answer_came || link->refused || bus->frame || bus->commit || bus->check
-	    || bus->write || bus->read)
+	if (link->answer_due || link->answer_came || link->refused || bus->frame || bus->check || bus->write
+	    || bus->read)
 		return 0;
 	if (link->count == COUNT_REST)
-		return UINT64_MAX;
+		return bus->commit ? 0u : UINT64_MAX;
 	/* the RTL rotates a word */
 	if (link->count > COUNT_LOADED && link->count < COUNT_ROTATED)
 		return (uint64_t)COUNT_ROTATED - link->count;

@@ -112,7 +112,6 @@ struct passo_link_wires {
 
 void passo_link_reset(struct passo_link *link);
 void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wires);
-/* Whether nothing changes in the link until the next half word or chip select edge. */
 /* Clocks in which the link only counts, UINT64_MAX at rest; and skipping them. */
 uint64_t passo_link_quiet(const struct passo_link *link);
 void passo_link_skip(struct passo_link *link, uint64_t clocks);
@@ -476,6 +475,8 @@ uint64_t passo_interpolate(uint64_t a, uint64_t b, uint32_t f);
 uint32_t passo_shape(const struct passo_tables *tables, enum passo_shape shape, uint64_t progress);
 /* Computes velocity_next, the velocity of the next tick of the present ramp. */
 void passo_ramp_make_velocity(struct passo_ramp_unit *ramp, const struct passo_tables *tables);
+/* The same for many ticks of a ramp of constant velocity, which is velocity_next already. */
+void passo_ramp_hold(struct passo_ramp_unit *ramp, uint32_t ticks);
 void passo_ramp_clock(struct passo_ramp_unit *ramp, const struct passo_channel *channel,
     const struct passo_channel_inputs *inputs, const struct passo_channel_wires *wires, bool *take,
     bool *take_now);
@@ -514,7 +515,9 @@ void passo_axis_skip(struct passo_axis *axis, uint64_t clocks);
 void passo_positions_reset(struct passo_positions *positions);
 void passo_positions_clock(struct passo_positions *positions, const uint32_t values[PASSO_AXES_MAX],
     bool zero, bool snapshot, bool latch);
-/* Skips clocks without `zero` and `snapshot`; no snapshot may be pending. */
+/* Clocks until a pending snapshot is taken, UINT64_MAX if none is; and skipping such clocks without `zero`
+ * and `snapshot`. */
+uint64_t passo_positions_quiet(const struct passo_positions *positions);
 void passo_positions_skip(struct passo_positions *positions, uint64_t clocks);
 
 void passo_machine_reset(struct passo_machine_unit *machine);

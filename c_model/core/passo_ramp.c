@@ -46,6 +46,14 @@ void passo_ramp_make_velocity(struct passo_ramp_unit *ramp, const struct passo_t
 	ramp->ready = true;
 }
 
+void passo_ramp_hold(struct passo_ramp_unit *ramp, uint32_t ticks)
+{
+	const uint64_t step = 2u * ramp->progress_step * ticks;
+
+	ramp->progress = (ramp->mirror ? ramp->progress - step : ramp->progress + step) & PROGRESS_MASK;
+	ramp->ticks -= ticks;
+}
+
 static void load(struct passo_ramp_unit *ramp, const struct passo_ramp *command)
 {
 	ramp->v_end = command->velocity_end;

@@ -24,6 +24,11 @@ void passo_tables_turn(struct passo_tables *tables, uint8_t channels);
 /* Levels at the inputs of a channel. */
 void passo_core_take_pins(const struct passo_core *core, unsigned channel, const struct passo_inputs *inputs,
     struct passo_channel_inputs *made);
+/* The levels of all output pins. */
+void passo_core_gather_outputs(struct passo_core *core);
+/* Of all channels: passo_channel_incomplete(), and whether the frame on the bus has to wait. */
+bool passo_core_any_incomplete(const struct passo_core *core);
+bool passo_core_any_busy(const struct passo_core *core);
 /* Whether a motion runs. */
 bool passo_core_any_moving(const struct passo_core *core);
 

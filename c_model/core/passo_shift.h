@@ -15,6 +15,12 @@ struct passo_shift {
 	uint64_t clock;       /* since the first bit */
 };
 
+/* The word that is being received. */
+static inline uint32_t *passo_shift_word(const struct passo_shift *shift)
+{
+	return &shift->miso[shift->clock / shift->half_period / 64u];
+}
+
 /* Whether the clocks of the last bit have passed; its falling edge is still to come. */
 static inline bool passo_shift_done(const struct passo_shift *shift)
 {

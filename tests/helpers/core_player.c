@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Plays pin waveforms to the model, clock by clock or with passo_core_advance().
+ * Plays pin waveforms to the model, clock by clock or with passo_core_advance() and passo_core_run().
  */
 #include "core_player.h"
 
@@ -34,8 +34,8 @@ bool player_exchange(
 		if (shift->clock != before + quiet)
 			return false;
 		if (quiet == 0u)
-			passo_core_exchange(player->core, inputs, shift, 0);
-		player->skipped += quiet;
+			passo_core_exchange(player->core, inputs, shift, end - before);
+		player->skipped += shift->clock - before - (quiet == 0u ? 1u : 0u);
 		player->clock += shift->clock - before;
 		good = look(player, quiet == 0u) && good;
 	}
@@ -51,17 +51,20 @@ bool player_play(struct player *player, struct player_segment *segments, size_t 
 		uint64_t left = segments[i].clocks;
 
 		while (left != 0u) {
-			const uint64_t quiet =
-			    player->advance ? passo_core_advance(player->core, &inputs, left) : 0u;
+			const bool runs = player->advance && left % 2u != 0u; /* one of both ways */
+			const uint64_t quiet = runs ? passo_core_run(player->core, &inputs, left)
+			                     : player->advance
+			                         ? passo_core_advance(player->core, &inputs, left)
+			                         : 0u;
 
 			if (quiet > left)
 				return false;
 			if (quiet == 0u)
 				passo_core_clock(player->core, &inputs);
-			player->skipped += quiet;
+			player->skipped += runs ? quiet - 1u : quiet;
 			player->clock += quiet == 0u ? 1u : quiet;
 			left -= quiet == 0u ? 1u : quiet;
-			good = look(player, quiet == 0u) && good;
+			good = look(player, runs || quiet == 0u) && good;
 		}
 		segments[i].spi_miso = passo_core_outputs(player->core)->spi_miso ? 1u : 0u;
 	}
