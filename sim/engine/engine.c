@@ -35,6 +35,7 @@ struct passo_engine *passo_engine_create(const struct passo_engine_config *confi
 		return NULL;
 	engine->inputs = (struct passo_inputs)PASSO_INPUTS_IDLE;
 	engine->spi_half_period = config->spi_half_period ? config->spi_half_period : 1;
+	engine->clock_hz = config->clock_hz;
 	engine->clocks = engine->ticks = 1;
 	engine->log_capacity = ENGINE_LOG_FULL;
 	engine->log = malloc(engine->log_capacity * sizeof *engine->log);
@@ -93,6 +94,29 @@ uint64_t passo_engine_run(struct passo_engine *engine, uint64_t clocks)
 	while (left && engine->log_length < ENGINE_LOG_FULL && !(engine->rig && passo_rig_calls(engine->rig)))
 		left -= engine_run_to_event(engine, left);
 	return clocks - left;
+}
+
+uint64_t passo_engine_pass_looks(struct passo_engine *engine, uint64_t period, uint64_t look)
+{
+	const uint64_t begin = engine->clock;
+	const uint32_t irq = engine->outputs.irq;
+
+	while (!engine->rig && engine->log_length < ENGINE_LOG_FULL && engine->outputs.irq == irq
+	       && !engine_core_has_news(engine->core)) {
+		const uint64_t calm = engine_core_calm(engine->core);
+		uint64_t left = calm < look ? 0u : ((calm - look) / period + 1u) * period;
+
+		if (left == 0u)
+			break;
+		while (left != 0u && engine->outputs.irq == irq)
+			left -= engine_run_to_event(engine, left);
+	}
+	return engine->clock - begin;
+}
+
+size_t passo_engine_waiting(const struct passo_engine *engine)
+{
+	return engine->log_length;
 }
 
 struct passo_rig *passo_engine_attach(struct passo_engine *engine, const struct passo_rig_config *config)

@@ -24,9 +24,15 @@ void engine_core_close(struct engine_core *core);
 uint64_t engine_core_run(struct engine_core *core, const struct passo_inputs *inputs, uint64_t limit,
     struct passo_outputs *outputs);
 
-/* Skips up to `limit` clocks of an exchange, see passo_core_shift(); 0 if it cannot. */
+/* The same during an exchange, at most to its end; 0: it must be done by single edges. */
 uint64_t engine_core_shift(struct engine_core *core, struct passo_inputs *inputs, struct passo_shift *shift,
     uint64_t limit, struct passo_outputs *outputs);
+
+/* Whether a host that reads the state would read something else than at the last call: state, rate or room of
+ * a channel. True if that is not known. */
+bool engine_core_has_news(struct engine_core *core);
+/* Clocks for which there certainly are no news; 0 if that is not known. */
+uint64_t engine_core_calm(const struct engine_core *core);
 
 bool engine_core_open_waves(struct engine_core *core, const char *path, uint64_t begin, uint64_t end);
 void engine_core_close_waves(struct engine_core *core);

@@ -16,6 +16,7 @@ struct passo_engine {
 	struct passo_outputs outputs;
 	struct passo_pin_event last;
 	uint64_t clock;
+	uint32_t clock_hz;
 	uint32_t spi_half_period;
 	uint64_t tick, clocks, ticks, clock_of_tick_0; /* time of an external master */
 	struct passo_pin_event *log;

@@ -131,6 +131,18 @@ uint64_t engine_core_shift(
 	return 0;
 }
 
+bool engine_core_has_news(engine_core *core)
+{
+	(void)core;
+	return true;
+}
+
+uint64_t engine_core_calm(const engine_core *core)
+{
+	(void)core;
+	return 0;
+}
+
 bool engine_core_open_waves(engine_core *core, const char *path, uint64_t begin, uint64_t end)
 {
 #ifdef PASSO_WAVES

@@ -6,6 +6,7 @@
 /* Clocks from chip select to the first edge of SCLK and from the last edge to chip select. */
 #define CS_SETUP 4u
 #define CS_HOLD 4u
+#define MICROSECONDS UINT64_C(1000000)
 
 static void run_shift(struct passo_engine *engine, struct passo_shift *shift)
 {
@@ -26,6 +27,7 @@ void passo_engine_transfer(
 	struct passo_shift shift = {
 	    .mosi = mosi, .miso = miso, .bits = 32u * count, .half_period = engine->spi_half_period};
 
+	engine_core_has_news(engine->core); /* from now on */
 	engine->inputs.spi_cs_n = false;
 	engine_run_all(engine, CS_SETUP);
 	while (!passo_shift_done(&shift))
@@ -34,6 +36,27 @@ void passo_engine_transfer(
 	engine_run_all(engine, CS_HOLD);
 	engine->inputs.spi_cs_n = true;
 	engine_run_all(engine, gap);
+}
+
+bool passo_engine_host_transfer(void *engine, const uint32_t *mosi, uint32_t *miso, size_t words)
+{
+	passo_engine_transfer(engine, mosi, miso, words, PASSO_ENGINE_GAP);
+	return true;
+}
+
+uint32_t passo_engine_host_microseconds(void *engine)
+{
+	const struct passo_engine *own = engine;
+	const uint64_t seconds = own->clock / own->clock_hz, rest = own->clock % own->clock_hz;
+
+	return (uint32_t)(seconds * MICROSECONDS + rest * MICROSECONDS / own->clock_hz);
+}
+
+void passo_engine_host_wait(void *engine, uint32_t microseconds)
+{
+	const struct passo_engine *own = engine;
+
+	passo_engine_run(engine, (uint64_t)microseconds * own->clock_hz / MICROSECONDS + 1u);
 }
 
 void passo_engine_pace(struct passo_engine *engine, uint64_t clocks, uint64_t ticks)

@@ -42,6 +42,19 @@ struct passo_rig *passo_engine_attach(struct passo_engine *engine, const struct 
  * executed. */
 uint64_t passo_engine_run(struct passo_engine *engine, uint64_t clocks);
 
+/* For a host that reads the state every `period` clocks, with frames of `look` clocks, the next of them now:
+ * runs through the periods in which it would certainly read what it did in the last frame. They need no
+ * frames: a frame that only reads changes nothing in the core that moves. Returns the clocks, 0 if the host
+ * must look; always 0 with the RTL, with inputs, whose watchdog needs the frames, and with a machine. */
+uint64_t passo_engine_pass_looks(struct passo_engine *engine, uint64_t period, uint64_t look);
+
+/* A struct passo_hardware of the driver: its functions with the engine as the context. A frame is followed by
+ * PASSO_ENGINE_GAP clocks, which the core needs to execute it. */
+#define PASSO_ENGINE_GAP 64u
+bool passo_engine_host_transfer(void *engine, const uint32_t *mosi, uint32_t *miso, size_t words);
+uint32_t passo_engine_host_microseconds(void *engine);
+void passo_engine_host_wait(void *engine, uint32_t microseconds);
+
 /* Direct access to the SPI pins, for an external master that counts time in ticks. Sets the unit: `ticks`
  * last as long as `clocks` of the core, and tick t ends with clock floor(t * clocks / ticks). Tick 0 is
  * now. */
@@ -67,6 +80,8 @@ uint32_t passo_engine_running(const struct passo_engine *engine);
 void passo_engine_set(struct passo_engine *engine, enum passo_input input, uint64_t levels);
 uint64_t passo_engine_clock(const struct passo_engine *engine);
 
+/* Events in the log. */
+size_t passo_engine_waiting(const struct passo_engine *engine);
 /* Moves up to `capacity` of the oldest events to `events`; returns their number. */
 size_t passo_engine_drain(struct passo_engine *engine, struct passo_pin_event *events, size_t capacity);
 

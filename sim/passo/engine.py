@@ -102,6 +102,21 @@ class Engine(Closed):
         """Run for up to `clocks`, fewer if many events are waiting; return the clocks executed."""
         return self._c.passo_engine_run(self._engine, clocks)
 
+    def pass_looks(self, period: int, look: int) -> int:
+        """Run through periods in which a host would read what it did before; see passo_engine.h."""
+        return self._c.passo_engine_pass_looks(self._engine, period, look)
+
+    def connect(self, hardware: Any, timed: bool) -> None:
+        """Make this engine a `struct passo_hardware`, with a clock if `timed`, without Python between."""
+        for name in ("transfer", "microseconds", "wait") if timed else ("transfer",):
+            setattr(hardware, name, ffi().addressof(self._c, f"passo_engine_host_{name}"))
+        hardware.context = self._engine
+
+    @property
+    def waiting(self) -> int:
+        """Events that are waiting to be drained."""
+        return self._c.passo_engine_waiting(self._engine)
+
     def pace(self, clocks: int, ticks: int) -> None:
         """Set the time unit of an external master: `ticks` last as long as `clocks`. Tick 0 is now."""
         self._c.passo_engine_pace(self._engine, clocks, ticks)

@@ -4,12 +4,12 @@
 from collections.abc import Sequence
 from typing import Any, Protocol
 
+from passo.engine import Engine
 from passo.failure import Failure
 from passo.native import ffi, planner
 from passo.registers import Verdict
 
-# Clocks after a frame, which the core needs to execute it.
-GAP = 64
+GAP = 64  # clocks after a frame, as PASSO_ENGINE_GAP
 TRIES = 4
 MICROSECONDS = 1_000_000
 
@@ -57,6 +57,9 @@ class Hardware:
         self.engine, self.clock_hz = engine, clock_hz
         self._raised: BaseException | None = None
         self.c = ffi().new("struct passo_hardware *", {"tries": tries})
+        if type(self) is Hardware and type(engine) is Engine and clock_hz in (0, engine.clock_hz):
+            engine.connect(self.c, timed=clock_hz > 0)
+            return
         # The callbacks live as long as this object.
         self._callbacks = [
             ffi().callback("bool(void *, const uint32_t *, uint32_t *, size_t)", self._transfer)

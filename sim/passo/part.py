@@ -17,6 +17,7 @@ from passo.expand.refusals import explain_text
 from passo.expand.tools import Tool
 from passo.failure import BadInputError
 from passo.gcode import NANOMETERS, Gcode, GcodeError, has_words, lines
+from passo.host_loop import HostLoop
 from passo.machine_file import MachineFile
 from passo.native import planner
 from passo.pair_engine import PairEngine
@@ -124,7 +125,7 @@ def play_part(
     slew = machine.clock_hz // SLEWS_PER_SECOND
     driver.call("configure_motion", slew, slew, 1 << 16)
     program = Program(driver, machine.settings, machine.gcode, look_ahead)
-    events = [engine.drain()]
+    loop = HostLoop(engine, machine.clock_hz // LOOPS_PER_SECOND)
     waiting = iter(part.lines)
     last, quiet = -1, engine.clock
     while not program.is_done:
@@ -134,40 +135,16 @@ def play_part(
             else:
                 program.end()
             program.poll()
-        program.poll()
-        engine.run(machine.clock_hz // LOOPS_PER_SECOND)
-        events.append(engine.drain())
+        loop.turn(program.poll, lambda: program.rests)
         if program.chords != last:
             last, quiet = program.chords, engine.clock
             progress(last)
         if engine.clock - quiet > PATIENCE * machine.clock_hz:
             raise BadInputError(f"{part.path}: timeout: no motion for an hour of simulated time")
-    engine.run(8 * sum(vars(machine.pins).values()))
-    events.append(engine.drain())
+    loop.run(8 * sum(vars(machine.pins).values()))
     snapshot, end = driver.snapshot(), driver.positions()[:axes]
     cause, matched = driver.cause.name, getattr(engine, "matched_edges", None)
-    return _played(part, machine, np.concatenate(events), end, int(snapshot.drained), cause, matched)
-
-
-def _played(
-    part: Part,
-    machine: MachineFile,
-    events: np.ndarray,
-    end: list[int],
-    drained: int,
-    cause: str,
-    matched: int | None,
-) -> Played:
-    running = np.concatenate([[0], events["running"] & 1]).astype(bool)
-    rises = events["clock"][running[1:] & ~running[:-1]].astype(np.int64)
-    falls = events["clock"][running[:-1] & ~running[1:]].astype(np.int64)
-    origin = int(rises[0]) if len(rises) else 0
-    clocks, positions = [], []
-    for axis in range(len(end)):
-        level = (events["step"] >> np.uint64(axis)).astype(np.int64) & 1
-        rising = np.flatnonzero(np.diff(level, prepend=0) == 1)
-        back = (events["dir"][rising] >> np.uint64(axis) & np.uint64(1)).astype(np.int64)
-        clocks.append(events["clock"][rising].astype(np.int64) - origin)
-        positions.append(np.cumsum(1 - 2 * back))
-    motions = [(b - origin, e - origin) for b, e in zip(rises.tolist(), falls.tolist(), strict=True)]
-    return Played(part, machine, clocks, positions, motions, end, drained, cause, matched)
+    steps = loop.steps(axes)
+    motions = list(zip(steps.begins, steps.ends, strict=True))
+    drained = int(snapshot.drained)
+    return Played(part, machine, steps.clocks, steps.positions, motions, end, drained, cause, matched)

@@ -4,7 +4,7 @@
 from passo.driver import Driver, DriverError
 from passo.gcode import GcodeError, GcodeSettings
 from passo.native import ffi, planner
-from passo.path import LOOK_AHEAD, PathSettings
+from passo.path import LOOK_AHEAD, PathSettings, feed_rests
 
 
 class Program:
@@ -49,6 +49,15 @@ class Program:
     def poll(self) -> None:
         """Take what there is room for, and poll the driver."""
         self._check("poll", self._c.passo_program_poll(self.c))
+
+    @property
+    def rests(self) -> bool:
+        """Whether polls would only read the state until that has changed."""
+        player, c = self.c.player, self._c
+        line = player.action.kind == c.PASSO_GCODE_LINE
+        waits = player.waits and not (line and c.passo_path_room(player.feed.path))
+        ended = self.c.ends and c.passo_player_is_ready(ffi().addressof(player))
+        return (waits or ended) and feed_rests(player.feed)
 
     def _check(self, call: str, error: int) -> None:
         self.driver.hardware.check()

@@ -9,6 +9,7 @@ import numpy as np
 from passo.build import Parameters
 from passo.driver import Driver
 from passo.engine import Engine, model_engine
+from passo.host_loop import HostLoop
 from passo.moves import PinTiming
 from passo.path import Path, PathFeed, PathSettings
 
@@ -48,24 +49,24 @@ class Player:
         self.driver.call("configure_motion", SLEW_MICROSECONDS, SLEW_MICROSECONDS, 1 << 20)
         self.path = Path(settings, self.engine.parameters, look_ahead)
         self.feed = PathFeed(self.driver, self.path)
-        self.events: list[np.ndarray] = []
+        self.turns = HostLoop(self.engine, loop)
 
-    def poll(self) -> None:
-        self.feed.poll()
-        self.engine.run(self.loop)
-        self.events.append(self.engine.drain())
+    def poll(self, until: Callable[[], bool] = lambda: True) -> None:
+        """One poll, or several without an effect, `until` a condition that only a poll can fulfil."""
+        self.turns.turn(self.feed.poll, lambda: not until() and self.feed.rests)
 
     def wait(self, until: Callable[[], bool], polls: int = 2_000_000) -> None:
         for _ in range(polls):
             if until():
                 return
-            self.poll()
+            self.poll(until)
         raise AssertionError("it takes too long")
 
     def rest(self, seconds: float) -> None:
         """Let time pass."""
         end = self.engine.clock + seconds * self.settings.clock_hz
-        self.wait(lambda: self.engine.clock >= end)
+        while self.engine.clock < end:
+            self.poll()
 
     def add(self, target: Sequence[float], feed: float | None) -> None:
         """Add a line as soon as there is room."""
@@ -78,26 +79,15 @@ class Player:
         return self.played()
 
     def played(self) -> Played:
-        self.engine.run(1000)
-        self.events.append(self.engine.drain())
-        events = np.concatenate(self.events)
-        running = np.concatenate([[0], events["running"] & 1]).astype(bool)
-        rises = events["clock"][running[1:] & ~running[:-1]].astype(np.int64)
-        falls = events["clock"][running[:-1] & ~running[1:]].astype(np.int64)
-        origin = int(rises[0]) if len(rises) else 0
-        clocks, steps = [], []
-        for axis in range(len(self.settings.axes)):
-            level = (events["step"] >> np.uint64(axis)).astype(np.int64) & 1
-            rising = np.flatnonzero(np.diff(level, prepend=0) == 1)
-            back = (events["dir"][rising] >> np.uint64(axis) & np.uint64(1)).astype(np.int64)
-            clocks.append(events["clock"][rising].astype(np.int64) - origin)
-            steps.append(np.cumsum(1 - 2 * back))
-        ends = [*falls.tolist(), self.engine.clock][: len(rises)]
+        self.turns.run(1000)
+        axes = len(self.settings.axes)
+        steps = self.turns.steps(axes)
+        ends = [*steps.ends, self.engine.clock - steps.origin][: len(steps.begins)]
         return Played(
-            clocks,
-            steps,
-            [(b - origin, e - origin) for b, e in zip(rises.tolist(), ends, strict=True)],
-            self.driver.positions()[: len(self.settings.axes)],
+            steps.clocks,
+            steps.positions,
+            list(zip(steps.begins, ends, strict=True)),
+            self.driver.positions()[:axes],
             int(self.driver.snapshot().drained),
         )
 
