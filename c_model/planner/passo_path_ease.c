@@ -198,7 +198,7 @@ uint64_t passo_path_shaped_corner(const struct passo_path_planner *path,
 		const uint64_t passed =
 		    passo_path_smaller(square, passo_path_smaller(wanted(last), wanted(item)));
 
-		item->passing = lacking_over(path, corner, unit, item, passed);
+		item->over = lacking_over(path, corner, unit, item, passed);
 	}
 #endif
 	return square;

@@ -72,7 +72,7 @@ uint64_t passo_path_highest(const struct passo_path_planner *path, const struct 
 uint64_t passo_path_pass_slope(const struct passo_path_item *item, uint64_t slope)
 {
 	slope = passo_path_smaller(slope, item->slope);
-	return passo_path_larger(slope - passo_mul_div(slope, item->passing, 256), 1);
+	return passo_path_larger(slope - passo_mul_div(slope, item->over, 256), 1);
 }
 
 uint64_t passo_path_velocity_after(const struct passo_path_planner *path, uint32_t index)

@@ -80,10 +80,9 @@ struct passo_path_item {
 	uint8_t eased; /* in a curve: quarters of the slope that are for the way across */
 #endif
 #ifndef PASSO_WITHOUT_JERK_PATHS
-	uint8_t passing; /* profile jerk: ramps over the lone corner at its start lack so many 256ths of the
-	                    slope */
-	uint64_t jerk;   /* profile jerk: change of the velocity by the square of the time that it takes at
-	                    least, UQ0.80 substeps per clock^3 */
+	uint8_t over;  /* profile jerk: 256ths of the slope that a ramp over the corner at its start lacks */
+	uint64_t jerk; /* profile jerk: change of the velocity by the square of the time that it takes at
+	                  least, UQ0.80 substeps per clock^3 */
 	struct passo_path_descent descent;
 #endif
 };
