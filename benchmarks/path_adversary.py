@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Many adversarial paths on all cores: the worst figures, and the smallest case of each kind of fault.
 
-    python -m benchmarks.path_adversary [PATHS [SEED [--keep]]]
+    python -m benchmarks.path_adversary [PATHS [SEED [--keep] [--motors]]]
 
-With --keep the smallest cases go to benchmarks/path_worst.json; tests/test_path_search.py has all of it.
-Batches that are done are kept in build/path_search, by what they depend on: an interrupted run continues.
+With --motors on machines whose motors are not their axes. With --keep the smallest cases go to
+benchmarks/path_worst.json; tests/test_path_search.py has all of it. Batches that are done are kept in
+build/path_search, by what they depend on: an interrupted run continues.
 """
 
 import hashlib
@@ -22,7 +23,7 @@ from passo.output import write_text
 from passo.toolchain import paths
 
 from benchmarks.path_measure import KINDS, Measured, compare, measure, play
-from benchmarks.path_paths import Case, case_of, read_cases, write_cases
+from benchmarks.path_paths import MACHINES, MOTORS, Case, case_of, read_cases, write_cases
 from benchmarks.path_search import BeyondError, search
 
 PATHS, BATCH = 10_000, 50
@@ -37,7 +38,9 @@ FIGURES: dict[str, Callable[[Measured], float]] = {
     "soft": lambda one: one.soft,
     "paced": lambda one: one.paced,
     **{name: lambda one, name=name: one.share(name) for name in ("speed", "acceleration", "jerk")},
+    "off": lambda one: one.off,
 }
+Machines = tuple[str, ...]  # names
 
 
 @dataclass
@@ -91,20 +94,20 @@ def done_in() -> Path:
     return DONE / digest.hexdigest()[:16]
 
 
-def kept_batch(folder: Path, seed: int, count: int) -> Found:
+def kept_batch(folder: Path, seed: int, count: int, machines: Machines) -> Found:
     """A batch, or what an earlier run has kept of it."""
-    kept = folder / f"{seed}-{count}.json"
+    kept = folder / f"{seed}-{count}-{'-'.join(machines)}.json"
     if kept.exists():
         return found_of(kept.read_text())
-    found = batch(seed, count)
+    found = batch(seed, count, machines)
     write_text(kept, found.to_json() + "\n")
     return found
 
 
-def batch(seed: int, count: int) -> Found:
+def batch(seed: int, count: int, machines: Machines) -> Found:
     """Draw and measure `count` paths."""
     found = Found()
-    search(count, seed, known=frozenset(KINDS), seen=found.see)
+    search(count, seed, known=frozenset(KINDS), seen=found.see, machines=machines)
     return found
 
 
@@ -121,19 +124,20 @@ def only(kind: str) -> Callable[[Case], Measured]:
     return check
 
 
-def smallest(kind: str, seed: int, count: int) -> BeyondError | None:
+def smallest(kind: str, seed: int, count: int, machines: Machines = tuple(MACHINES)) -> BeyondError | None:
     """Draw a batch again, and shrink its first case of this kind."""
-    return search(count, seed, only(kind), frozenset(KINDS) - {kind})
+    return search(count, seed, only(kind), frozenset(KINDS) - {kind}, machines=machines)
 
 
-def adversaries(count: int = PATHS, seed: int = 1) -> Found:
+def adversaries(count: int = PATHS, seed: int = 1, machines: Machines = tuple(MACHINES)) -> Found:
     """Measure `count` paths on all cores."""
     found, jobs, told, folder = Found(), {}, 0, done_in()
     folder.mkdir(parents=True, exist_ok=True)
     with progress("adversarial paths", count) as report, ProcessPoolExecutor(os.cpu_count()) as pool:
         for number in range(-(-count // BATCH)):
             own = seed * 1_000_003 + number
-            jobs[pool.submit(kept_batch, folder, own, min(BATCH, count - number * BATCH))] = own
+            size = min(BATCH, count - number * BATCH)
+            jobs[pool.submit(kept_batch, folder, own, size, machines)] = own
         for job in as_completed(jobs):
             found.add(job.result(), jobs[job])
             report(min(found.paths, count))
@@ -171,14 +175,15 @@ def figures(found: Found) -> dict[str, Any]:
 
 def main(words: list[str]) -> None:
     """Search, show and keep."""
+    machines = tuple(MOTORS if "--motors" in words else MACHINES)
     numbers = [int(word) for word in words if word.isdigit()]
     count, seed = (numbers + [PATHS, 1][len(numbers) :])[:2]
-    found = adversaries(count, seed)
+    found = adversaries(count, seed, machines)
     show(found)
     show_open()
     kept = read_cases(WORST)
     for kind, own in found.batches.items():
-        if (error := smallest(kind, own, BATCH)) is not None:
+        if (error := smallest(kind, own, BATCH, machines)) is not None:
             console.print(str(error))
             kept[f"{kind} {own}"] = error.case
     if "--keep" in words:

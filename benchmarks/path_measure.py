@@ -2,26 +2,31 @@
 """Measures a path: its time against the fastest motion, and its pins against the limits of the axes."""
 
 from dataclasses import dataclass, field, replace
+from itertools import product
 from math import inf
 
+import numpy as np
 from passo.axis_judge import Marks, Share, shares
 from passo.driver import DriverError
 from passo.path import LOOK_AHEAD, PathSettings
-from passo.path_rounding import Line
+from passo.path_rounding import SHARE, Line
 from passo.plan import PlanError
 
 from benchmarks.path_paths import Case
 from benchmarks.path_plan import plan
 from benchmarks.path_reference import fastest
 from benchmarks.path_reference_jerk import soft_seconds
-from tests.helpers.path_player import Player
+from tests.helpers.path_player import Played, Player
 
 UNLIMITED_AIM, LOOK_AHEAD_AIM = 1.02, 1.05
 FAST_POLLS = 8000  # per second, of a host that can send any path: the fastest motion knows of no host
 PACED_AIM = 2.0  # what the polls of the case cost of the time
 SOFT_AIM = 1.6  # cosine ramps, and half of the jerk in curves
 SHAPED_AIM = 2.1  # a ramp over several lines has the slope of the weakest axis, doubled as often as possible
-KINDS = ("underrun", "fault", "slow", "slow48", "paced", "speed", "acceleration", "jerk")
+OFF_BOUND = 1.0
+CHUNK = 1_000_000  # places times lines, together
+LOOKS = 4000  # steps of a path whose places are checked
+KINDS = ("underrun", "fault", "slow", "slow48", "paced", "speed", "acceleration", "jerk", "off")
 SHORTEST = 0.03  # s: in less, ticks count
 LONGEST = 4.0  # s: what takes longer is not played
 
@@ -38,6 +43,7 @@ class Measured:
     soft: float = 0.0  # the same of profile jerk, against a fast motion with that
     paced: float = 0.0  # with the polls of the case, of the time with FAST_POLLS
     shares: list[Share] = field(default_factory=list)
+    off: float = 0.0  # farthest place from the path and what merging permits, 1: a step of each motor
     fault: str = ""  # the core stopped, or the end is not exact
 
     def share(self, name: str) -> float:
@@ -60,6 +66,8 @@ class Measured:
             found["slow"] = f"{self.soft:.4f} times a fast motion with this jerk, all lines known"
         if self.paced > PACED_AIM:
             found["paced"] = f"{self.paced:.4f} times as long as with {FAST_POLLS} polls"
+        if self.off > OFF_BOUND:
+            found["off"] = f"{self.off:.3f} steps of all motors off the path"
         for share in sorted(self.shares, key=lambda share: share.share):
             if share.share > share.bound:
                 found[share.name] = str(share)
@@ -117,6 +125,36 @@ def play(case: Case, measured: Measured) -> None:
         measured.fault = f"{played.drained} substeps were drained"
     marks = Marks.of(lines, settings, played.clocks, played.steps)
     measured.shares = shares(played.clocks, played.steps, settings, marks)
+    measured.off = off_path(lines, settings, played)
+
+
+def off_path(lines: list[Line], settings: PathSettings, played: Played) -> float:
+    """How far the axes are off the path at the steps of their motors; 1: what a step of each is worth."""
+    times = np.unique(np.concatenate(played.clocks))
+    times = times[:: len(times) // LOOKS + 1]
+    made = [
+        np.append(0, steps)[np.searchsorted(clocks, times, "right")] / scale
+        for clocks, steps, scale in zip(played.clocks, played.steps, settings.scales, strict=True)
+    ]
+    places = settings.motors.axes_of(np.stack(made, axis=1))
+    begin = np.array([[0.0] * len(settings.axes), *(list(target) for target, _ in lines[:-1])])
+    way = np.array([list(target) for target, _ in lines]) - begin
+    square = np.maximum((way**2).sum(axis=1), 1e-18)
+    farthest = 0.0
+    for some in np.array_split(places, max(1, len(places) * len(lines) // CHUNK)):
+        gone = some[:, None] - begin
+        share = np.clip((gone * way).sum(axis=2) / square, 0, 1)
+        least = np.linalg.norm(gone - share[..., None] * way, axis=2).min(axis=1)
+        farthest = max(farthest, float(least.max(initial=0)))
+    return max(0.0, farthest - float(settings.junction_deviation) * SHARE) / worth_of_a_step(settings)
+
+
+def worth_of_a_step(settings: PathSettings) -> float:
+    """How far the machine is off, in mm, where each motor is off by a step: at most."""
+    rows = settings.motors.map(len(settings.axes))
+    _, first, own = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+    signs = np.array(list(product((-1, 1), repeat=len(first))))[:, own.ravel()]
+    return float(np.linalg.norm(settings.motors.axes_of(signs / settings.scales), axis=1).max())
 
 
 def measure(case: Case) -> Measured:

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from passo.output import write_text
-from passo.path import PathAxis, PathSettings
+from passo.path import Motors, PathAxis, PathSettings
 from passo.path_rounding import Line
 
 LINES_MAX = 1500
@@ -41,7 +41,25 @@ MACHINES: dict[str, PathSettings] = {
     "fine": PathSettings((PathAxis(1600), PathAxis(1600), PathAxis(1600, 12, 100))),
     "fast": PathSettings((PathAxis(400, 1000, 20_000, jerk=2_000_000),) * 3),
 }
-JERKS = ("soft", "fast")  # machines whose axes have a jerk
+# Machines whose motors are not their axes; in the last one the motors are the weaker ones.
+XY, XZ = ((1, 1, 0), (1, -1, 0), (0, 0, 1)), ((1, 0, 1), (0, 1, 0), (1, 0, -1))
+MOTORS: dict[str, PathSettings] = {
+    "ganged": PathSettings(
+        (PathAxis(), PathAxis(), PathAxis(400, 12, 100)),
+        motors=Motors(((1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 1, 0))),
+    ),
+    "corexy": PathSettings((PathAxis(), PathAxis(), PathAxis(400, 12, 100)), motors=Motors(XY)),
+    "corexz": PathSettings((PathAxis(160), PathAxis(), PathAxis(160, 20, 400)), motors=Motors(XZ)),
+    "corexy_laser": PathSettings(
+        (PathAxis(160, 500, 8000), PathAxis(160, 500, 4000), PathAxis(400, 10, 50)), motors=Motors(XY)
+    ),
+    "corexy_weak": PathSettings(
+        (PathAxis(160, 300, 5000), PathAxis(160, 300, 5000), PathAxis(400, 10, 50)),
+        motors=Motors(XY, PathAxis(0, 250, 3000)),
+    ),
+    "corexy_soft": replace(MACHINES["soft"], motors=Motors(XY)),
+}
+JERKS = ("soft", "fast")  # machines that are drawn with profile jerk
 
 
 @dataclass(frozen=True)
@@ -58,7 +76,7 @@ class Case:
     @property
     def settings(self) -> PathSettings:
         """Of the planner."""
-        return replace(MACHINES[self.machine], profile=self.profile, polls=self.polls)
+        return replace({**MACHINES, **MOTORS}[self.machine], profile=self.profile, polls=self.polls)
 
     @property
     def lines(self) -> list[Line]:

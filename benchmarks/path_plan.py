@@ -36,7 +36,7 @@ def plan(
     def take() -> None:
         while (line := path.next_line()) is not None:
             made.lines.append(line)
-            made.words.extend((line.substeps, line.directions, *line.steps[0 : len(settings.axes)]))
+            made.words.extend((line.substeps, line.directions, *line.steps[0 : len(settings.scales)]))
         while (ramp := path.next_ramp()) is not None:
             made.ramps.append(ramp)
             made.words.extend((ramp.ticks, ramp.velocity_end & 0xFFFFFFFF, ramp.velocity_end >> 32))

@@ -3,8 +3,9 @@
 
 The unknowns are the squares of the speed at the nodes of a grid over the rounded path (path_rounding.py).
 Between two nodes the acceleration along the path is constant, `(b' - b) / 2h`; that of an axis is `t`
-times that plus its curvature times `b`, both signed, at either end within the limit of the axis. The
-largest squares are the shortest time. It knows nothing of steps, substeps, ticks, look-ahead, or of how a
+times that plus its curvature times `b`, both signed, at either end within the limit of the axis; where a
+motor moves two axes, the same holds along the direction between them. The largest squares are the
+shortest time. It knows nothing of steps, substeps, ticks, look-ahead, or of how a
 planner chooses its speeds.
 
 A shaped ramp has its peak acceleration in the middle: the part along the path counts by how much steeper
@@ -111,29 +112,32 @@ def fastest_at(
 ) -> Motion:
     """The same with ramps that are so much steeper in the middle."""
     path = rounded(lines, settings, begin)
+    limits = settings.limits()
     speed, acceleration, jump = (
-        np.array([float(getattr(axis, name)) for axis in settings.axes])
+        np.array([float(getattr(limit, name)) for _, limit in limits])
         for name in ("speed", "acceleration", "jump")
     )
+    along_limits = np.array([direction for direction, _ in limits]).T
+    unit, change = path.unit @ along_limits, path.turn @ along_limits
     marks, feeds = _feeds(path)
     place = _grid(path, marks)
     size, middle = np.diff(place), (place[1:] + place[:-1]) / 2
     line = np.minimum(np.searchsorted(path.end, middle), len(path.end) - 1)
-    share = np.maximum(np.abs(path.unit), 1e-12)
+    share = np.maximum(np.abs(unit), 1e-12)
     along = (acceleration / share).min(axis=1)
     if settings.acceleration:
         along = np.minimum(along, float(settings.acceleration))
     top = np.minimum((speed / share).min(axis=1)[line], feeds[np.searchsorted(marks, middle)]) ** 2
     most = np.minimum(np.append(top, np.inf), np.insert(top, 0, np.inf))
-    halt = np.where(path.unit[[0, -1]] == 0, np.inf, jump / share[[0, -1]]).min(axis=1) ** 2
+    halt = np.where(unit[[0, -1]] == 0, np.inf, jump / share[[0, -1]]).min(axis=1) ** 2
     most[0], most[-1] = np.minimum(halt, most[[0, -1]])
     node = np.searchsorted(place, path.corner - TINY)
-    turn = np.maximum(np.abs(path.turn), 1e-12)
+    turn = np.maximum(np.abs(change), 1e-12)
     np.minimum.at(most, node, (acceleration / turn).min(axis=1) * path.arc)
     most[node[(np.linalg.norm(path.turn, axis=1) > STRAIGHT) & (path.over < TINY)]] = 0
-    jumping = np.where((jump > 0) & (path.turn != 0), jump / turn, np.inf)
+    jumping = np.where((jump > 0) & (change != 0), jump / turn, np.inf)
     np.minimum.at(most, node, jumping.min(axis=1) ** 2)
-    stage = _Stage(path, place, size, _corner_at(path, middle), along[line] / steeper, most)
+    stage = _Stage(path, unit, change, place, size, _corner_at(path, middle), along[line] / steeper, most)
     square = stage.solve(acceleration, steeper)
     return Motion(path, place, square, stage.along, top, stage.corner >= 0, most)
 
@@ -143,6 +147,8 @@ class _Stage:
     """The cells, and what the squares at the nodes between them may be."""
 
     path: Rounded
+    unit: np.ndarray  # line x limit, as the direction of the path
+    turn: np.ndarray  # corner x limit
     place: np.ndarray
     size: np.ndarray
     corner: np.ndarray  # that covers each cell, or -1
@@ -159,10 +165,10 @@ class _Stage:
         which = self.corner[bent]
         begin = path.corner[which] - path.before[which]
         for axis, limit in enumerate(acceleration):
-            curvature = path.turn[which, axis] / path.over[which]
+            curvature = self.turn[which, axis] / path.over[which]
             for end in (0, 1):
                 share = np.clip((self.place[bent + end] - begin) / path.over[which], 0, 1)
-                direction = path.unit[which, axis] + share * path.turn[which, axis]
+                direction = self.unit[which, axis] + share * self.turn[which, axis]
                 slope = direction * steeper / (2 * self.size[bent])
                 low, high = -slope + curvature * (1 - end), slope + curvature * end
                 for sign in (1.0, -1.0):
@@ -182,10 +188,10 @@ class _Stage:
         node = np.searchsorted(self.place, path.corner[which] - TINY)
         size = np.linalg.norm(path.turn[which], axis=1)
         for axis, limit in enumerate(acceleration):
-            turn = path.turn[which, axis]
+            turn = self.turn[which, axis]
             sign = np.sign(turn) * steeper
-            before = sign * path.unit[which, axis] / (2 * self.size[node - 1])
-            behind = sign * path.unit[which + 1, axis] / (2 * self.size[node])
+            before = sign * self.unit[which, axis] / (2 * self.size[node - 1])
+            behind = sign * self.unit[which + 1, axis] / (2 * self.size[node])
             needed = np.abs(turn) * size / (4 * path.deviation) if path.deviation else np.abs(turn)
             for one, other in ((3, 1), (1, 3)):
                 row = (-one * before, needed + one * before - other * behind, other * behind)

@@ -36,7 +36,7 @@ SLOWEST = 1e-9  # of the greatest square
 
 @dataclass(frozen=True)
 class Grid:
-    """Nodes, and the sums in brackets at those between the first and the last, for each axis."""
+    """Nodes, and the sums in brackets at those between the first and the last, for each limit."""
 
     place: np.ndarray
     most: np.ndarray
@@ -101,8 +101,13 @@ def _most(motion: Motion, settings: PathSettings, place: np.ndarray, unit: np.nd
     known = np.minimum(np.searchsorted(motion.place, place - 1e-12), len(motion.most) - 1)
     at_node = np.abs(motion.place[known] - place) < 1e-9
     most[at_node] = np.minimum(most[at_node], motion.most[known[at_node]])
-    jerk = np.array([float(own.jerk) for own in settings.axes])
-    weakest = (jerk / np.maximum(np.abs(unit), 1e-12)).min(axis=1)
+    weakest = np.min(
+        [
+            float(own.jerk) / np.maximum(np.abs(unit @ direction), 1e-12)
+            for direction, own in settings.limits()
+        ],
+        axis=0,
+    )
     risen = (weakest / 2) ** 2 * (6 * gap / weakest) ** (4 / 3)
     rests = most <= 0
     most[1:][rests[:-1]] = np.minimum(most[1:], risen)[rests[:-1]]
@@ -121,14 +126,15 @@ def _grid(motion: Motion, settings: PathSettings) -> Grid:
     here = eye_array(cells - 1, cells + 1, k=1).tocsr()
     rows, bounds, jerks = [], [], []
     whole = (bend**2).sum(axis=1)
-    for axis, own in enumerate(settings.axes):
+    for direction, own in settings.limits():
+        along, across = unit @ direction, bend @ direction
         for end in (low, high):
-            row = diags_array(unit[:, axis] / 2) @ rise + diags_array(bend[:, axis]) @ end
+            row = diags_array(along / 2) @ rise + diags_array(across) @ end
             rows += [row, -row]
             bounds += [np.full(cells, float(own.acceleration))] * 2
-        jerk = diags_array(mean @ unit[:, axis] / 2 / width) @ ((behind - before) @ rise)
-        jerk = jerk + diags_array(1.5 * (mean @ bend[:, axis])) @ (mean @ rise)
-        jerks.append((jerk - diags_array(mean @ (whole * unit[:, axis])) @ here).tocsr())
+        jerk = diags_array(mean @ along / 2 / width) @ ((behind - before) @ rise)
+        jerk = jerk + diags_array(1.5 * (mean @ across)) @ (mean @ rise)
+        jerks.append((jerk - diags_array(mean @ (whole * along)) @ here).tocsr())
     most = _most(motion, settings, place, unit)
     return Grid(place, most, vstack(rows).tocsr(), np.concatenate(bounds), jerks)
 
@@ -139,7 +145,7 @@ def _faster(grid: Grid, settings: PathSettings, square: np.ndarray) -> np.ndarra
     slope = diags_array(0.5 * at**-1.5)
     rows, bounds = [grid.accelerations], [grid.bounds]
     here = eye_array(len(at), len(square), k=1).tocsr()
-    for own, jerk in zip(settings.axes, grid.jerks, strict=True):
+    for (_, own), jerk in zip(settings.limits(), grid.jerks, strict=True):
         tangent = float(own.jerk) * (slope @ here)
         for sign in (1, -1):
             rows.append(sign * jerk + tangent)

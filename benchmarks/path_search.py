@@ -2,7 +2,7 @@
 """The search for the worst path: Hypothesis draws recipes, aims at the greatest figures, shrinks faults."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from hypothesis import HealthCheck, Phase, given, settings, target
@@ -72,9 +72,9 @@ def fans(draw: Any) -> Piece:
 
 
 @st.composite
-def cases(draw: Any) -> Case:
+def cases(draw: Any, machines: Sequence[str] = tuple(MACHINES)) -> Case:
     """A path that takes no more than some seconds."""
-    machine = draw(st.sampled_from(sorted(MACHINES)))
+    machine = draw(st.sampled_from(sorted(machines)))
     profiles = ("linear", "linear", "cosine", "sigmoid", *(("jerk", "jerk") if machine in JERKS else ()))
     case = Case(
         machine,
@@ -109,6 +109,7 @@ def search(
     check: Check = measure,
     known: frozenset[str] = frozenset(),
     seen: Callable[[Case, Measured], None] = lambda case, measured: None,
+    machines: Sequence[str] = tuple(MACHINES),
 ) -> BeyondError | None:
     """Draw `cases` cases; the smallest that is beyond a bound of a kind that is not known yet, or None."""
 
@@ -121,7 +122,7 @@ def search(
         suppress_health_check=list(HealthCheck),
         report_multiple_bugs=False,
     )
-    @given(cases())
+    @given(cases(machines))
     def drawn(case: Case) -> None:
         measured = check(case)
         seen(case, measured)

@@ -105,7 +105,7 @@ def test_the_rounding_is_within_the_junction_deviation() -> None:
     """Whatever the lines; a reversal has none."""
     for lines in path_cases.wanderings(20, 5):
         path = rounded(lines, MACHINE)
-        assert (np.linalg.norm(path.off, axis=1) <= 0.01 * 1.0001).all()
+        assert (np.linalg.norm(path.off_along(np.eye(path.points.shape[1])), axis=1) <= 0.01 * 1.0001).all()
         ends = np.concatenate([path.corner - path.before, path.corner + path.behind])
         assert (path.corner[:-1] + path.behind[:-1] <= path.corner[1:] - path.before[1:] + 1e-9).all()
         assert ends.min() >= 0 and ends.max() <= path.end[-1]

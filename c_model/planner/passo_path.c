@@ -239,8 +239,8 @@ bool passo_path_next_line(struct passo_path_planner *path, struct passo_line *li
 	    .substeps = item->substeps,
 	    .output = item->output,
 	};
-	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
-		line->steps[axis] = item->steps[axis];
+	for (uint32_t motor = 0; motor < passo_path_motors(path); motor++)
+		line->steps[motor] = item->steps[motor];
 	path->sent++;
 	path->lines_end = item->last;
 	return true;

@@ -20,6 +20,7 @@
 #ifndef PASSO_PATH_H
 #define PASSO_PATH_H
 
+#include "passo_motors.h"
 #include "passo_path_state.h"
 #include "passo_plan.h"
 
@@ -45,6 +46,11 @@ struct passo_path_axis {
 struct passo_path_settings {
 	struct passo_machine machine;
 	struct passo_path_axis axis[PASSO_AXES_MAX];
+#ifndef PASSO_CARTESIAN
+	struct passo_motors motors;   /* machine.axes counts the axes, not the motors */
+	struct passo_path_axis mixed; /* limits of each motor that moves two axes, 0: the larger one of these;
+	                                 steps_per_mm is not used: both have that of the motor */
+#endif
 	uint64_t acceleration;       /* UQ32.32 mm/s^2 along the path; 0: only those of the axes */
 	uint64_t junction_deviation; /* UQ32.32 mm; 0: rest at every corner */
 	uint64_t tolerance;          /* UQ32.32 mm, see passo_path_tolerance(); 0: a twentieth of the junction
@@ -64,17 +70,20 @@ struct passo_path_move {
 };
 
 /* Starts a path at position 0 of all axes. `items` holds `capacity` lines, at least
- * PASSO_PATH_ITEMS_MIN: the look-ahead. Errors: BAD_CLOCK, BAD_AXES, BAD_PROFILE, NO_SCALE, NO_AXIS_SPEED,
+ * PASSO_PATH_ITEMS_MIN: the look-ahead. Errors: BAD_CLOCK, BAD_AXES (also too many motors, or a map of them
+ * that has no inverse), BAD_PROFILE, NO_SCALE, NO_AXIS_SPEED,
  * NO_AXIS_ACCELERATION, NO_JERK, TOO_FAST, PATH_FULL (capacity too small). */
 enum passo_plan_error passo_path_open(struct passo_path_planner *path,
     const struct passo_path_settings *settings, struct passo_path_item *items, uint32_t capacity);
 
-/* Drops all known lines and starts a new path at these positions, in steps: after a stop, or homing. */
+/* Drops all known lines and starts a new path at these positions of the motors, in steps: after a stop, or
+ * homing. */
 void passo_path_restart(struct passo_path_planner *path, const int32_t *positions);
 
-/* After a stop: continues the rest of the path from these positions, in steps, which must be on one of the
- * lines still in memory, those added last; the first match from number `done` on (counted from 0) is used.
- * Each axis makes its missing steps. False: the positions are on none of them, and nothing has changed. */
+/* After a stop: continues the rest of the path from these positions of the motors, in steps, which must be on
+ * one of the lines still in memory, those added last; the first match from number `done` on (counted from 0)
+ * is used. Each motor makes its missing steps. False: the positions are on none of them, and nothing has
+ * changed. */
 bool passo_path_recover(struct passo_path_planner *path, const int32_t *positions, uint32_t done);
 
 /* Ramps of a frame, or in the core's queue while it is prepared, if that is fewer; lines in the queue then,
@@ -130,6 +139,61 @@ bool passo_path_is_empty(const struct passo_path_planner *path);
  * per clock, rounded down, and a length, UQ32.32 mm, in substeps, to nearest; both saturate. */
 uint32_t passo_path_velocity(const struct passo_path_planner *path, uint64_t speed);
 uint32_t passo_path_substeps(const struct passo_path_planner *path, uint64_t length);
+
+/* Its motors, and the places of a motor and of an axis (the sum of its motors, to be divided by *parts): see
+ * passo_motors.h. An image without room has a motor for each axis, PASSO_CARTESIAN. */
+static inline uint32_t passo_path_motors(const struct passo_path_planner *path)
+{
+#ifndef PASSO_CARTESIAN
+	if (path->motors.count > 0)
+		return path->motors.count;
+#endif
+	return path->machine.axes;
+}
+
+static inline int64_t passo_path_motor_place(
+    const struct passo_path_planner *path, uint32_t motor, const int64_t *axes)
+{
+#ifdef PASSO_CARTESIAN
+	(void)path;
+	return axes[motor];
+#else
+	return passo_motor_place(&path->motors, motor, axes);
+#endif
+}
+
+static inline int64_t passo_path_axis_place(
+    const struct passo_path_planner *path, uint32_t axis, const int32_t *places, uint32_t *parts)
+{
+#ifdef PASSO_CARTESIAN
+	(void)path, (void)parts;
+	return places[axis];
+#else
+	return passo_axis_place(&path->motors, axis, places, parts);
+#endif
+}
+
+/* An acceleration, UQ32.32 mm/s^2, or the lowest one of the motors that move two axes, along the direction
+ * between them. */
+#ifdef PASSO_CARTESIAN
+#define passo_path_mixed_acceleration(path, acceleration) (acceleration)
+#else
+uint64_t passo_path_mixed_acceleration(const struct passo_path_planner *path, uint64_t acceleration);
+#endif
+
+/* The limits of a motor: those of its axis; or, in *mixed, of one that moves two of them: along the direction
+ * between them, 1 mm of which is sqrt(2) mm of the motor. */
+#ifdef PASSO_CARTESIAN
+static inline const struct passo_path_axis *passo_path_motor_limits(
+    const struct passo_path_settings *settings, uint32_t motor, struct passo_path_axis *mixed)
+{
+	(void)mixed;
+	return &settings->axis[motor];
+}
+#else
+const struct passo_path_axis *passo_path_motor_limits(
+    const struct passo_path_settings *settings, uint32_t motor, struct passo_path_axis *mixed);
+#endif
 
 /* Free entries: lines that can be added. */
 uint32_t passo_path_room(const struct passo_path_planner *path);

@@ -36,7 +36,7 @@ static void bend_lines(const struct passo_path_planner *path, const int32_t *uni
 	struct passo_path_item *last = passo_path_item(path, path->added - 1);
 	int64_t curvature[PASSO_AXES_MAX];
 
-	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
+	for (uint32_t axis = 0; axis < passo_path_rows(path); axis++) {
 		const int64_t turn = (int64_t)unit[axis] - path->at.direction[axis];
 		const int64_t size = (int64_t)passo_path_smaller(
 		    passo_mul_shift(passo_path_size(turn), inverse, 30), PASSO_PATH_SQUARE_MAX / 2);
@@ -75,7 +75,7 @@ static void find_rounding(const struct passo_path_planner *path, const int32_t *
 		return;
 	item->valley = before && behind;
 	item->turn = (uint32_t)((before ? rounding->before : rounding->behind) >> 16);
-	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
+	for (uint32_t axis = 0; axis < passo_path_rows(path); axis++) {
 		const int64_t turn = (int64_t)unit[axis] - path->at.direction[axis];
 		const uint64_t change = passo_path_size(turn);
 		if (change == 0)
@@ -103,7 +103,7 @@ uint64_t passo_path_corner_square(
 {
 	uint64_t square = PASSO_PATH_SQUARE_MAX;
 
-	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
+	for (uint32_t axis = 0; axis < passo_path_rows(path); axis++) {
 		const struct passo_path_scale *own = &path->axis[axis];
 		const uint32_t change = corner->change[axis];
 
@@ -124,12 +124,12 @@ uint64_t passo_path_limit_corner(
 	struct passo_path_corner corner = {.turn = 0};
 
 	passo_path_restore_start(passo_path_item(path, path->added - 1), &path->at);
-	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
+	for (uint32_t axis = 0; axis < passo_path_rows(path); axis++) {
 		const uint32_t change =
 		    (uint32_t)passo_path_size((int64_t)unit[axis] - path->at.direction[axis]);
 
 		corner.change[axis] = change;
-		corner.turn += (uint64_t)change * change;
+		corner.turn += axis < path->machine.axes ? (uint64_t)change * change : 0;
 	}
 	if (corner.turn < 4) {
 		item->arc = PASSO_PATH_ARC_BEFORE | PASSO_PATH_ARC_BEHIND;

@@ -55,7 +55,7 @@ void passo_path_bend(const struct passo_path_planner *path, const int64_t *curva
 		return;
 	curve->halved = passo_path_is_rounded(path);
 	half = passo_path_halves(item) > 1 ? half : 0;
-	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
+	for (uint32_t axis = 0; axis < passo_path_rows(path); axis++) {
 		const uint32_t share = passo_path_size32(unit[axis]);
 
 		if (curvature[axis] == 0 || share < SHARE_MIN)

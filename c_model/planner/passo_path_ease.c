@@ -47,7 +47,7 @@ static uint64_t square_by(const struct passo_path_planner *path, const struct pa
 {
 	uint64_t left[PASSO_AXES_MAX];
 
-	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
+	for (uint32_t axis = 0; axis < passo_path_rows(path); axis++)
 		left[axis] = left_of(path, corner, unit, axis, item);
 	return passo_path_corner_square(path, corner, left);
 }
@@ -71,7 +71,7 @@ static uint64_t jerk_of(const struct passo_path_planner *path, const struct pass
 	const uint64_t part = passo_isqrt64(corner->turn) / SMALL;
 	uint64_t jerk = PASSO_PATH_SQUARE_MAX;
 
-	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
+	for (uint32_t axis = 0; axis < passo_path_rows(path); axis++) {
 		const uint64_t change = corner->change[axis], most = passo_path_larger(change, part);
 
 		if (change > 0)
@@ -118,7 +118,7 @@ static uint64_t weakest_of(const struct passo_path_planner *path, const int32_t 
 {
 	uint64_t weakest = PASSO_PATH_SQUARE_MAX >> 2;
 
-	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
+	for (uint32_t axis = 0; axis < passo_path_rows(path); axis++) {
 		if (passo_path_size32(unit[axis]) >= PASSO_PATH_ONE / SMALL)
 			weakest = passo_path_smaller(weakest, path->axis[axis].acceleration);
 	}
@@ -152,7 +152,7 @@ static uint8_t lacking_over(const struct passo_path_planner *path, const struct 
 	const struct passo_path_item *last = passo_path_item(path, path->added - 1);
 	uint64_t lacks = 0;
 
-	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
+	for (uint32_t axis = 0; axis < passo_path_rows(path); axis++) {
 		const uint64_t most = path->axis[axis].acceleration;
 		const uint64_t along = passo_path_larger(peak_of(path, last->slope, path->at.direction, axis),
 		    peak_of(path, item->slope, unit, axis));

@@ -9,6 +9,26 @@
 /* Bits of the longest component before the length is computed: the sum of eight squares has 64. */
 #define COMPONENT_BITS 30u
 
+/* Behind the axes, the parts of a unit vector along the motors that move two. */
+static void find_rows(const struct passo_path_planner *path, int32_t *unit)
+{
+#ifdef PASSO_CARTESIAN
+	(void)path, (void)unit;
+#else
+	int64_t axes[PASSO_AXES_MAX];
+
+	if (path->rows == path->machine.axes)
+		return;
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
+		axes[axis] = unit[axis];
+	for (uint32_t motor = 0, row = path->machine.axes; row < path->rows; motor++) {
+		if (passo_motor_is_mixed(&path->motors, motor))
+			unit[row++] = (int32_t)(passo_motor_place(&path->motors, motor, axes)
+			                        * PASSO_PATH_HALF_ROOT / PASSO_PATH_ONE);
+	}
+#endif
+}
+
 /* Unit vector and length (UQ32.16 substeps; saturates) of a line between two targets; false: it has no
  * length.
  */
@@ -37,6 +57,7 @@ static bool find_direction(const struct passo_path_planner *path, const int64_t 
 
 		unit[axis] = target[axis] < from[axis] ? -share : share;
 	}
+	find_rows(path, unit);
 	/* Q31.32 mm times substeps per mm, less 16 bits */
 	const uint64_t product = (uint64_t)root * path->substeps_per_mm;
 	if (right <= 16)
@@ -75,18 +96,19 @@ struct passo_path_merged passo_path_off(const struct passo_path_planner *path, c
 	return merged;
 }
 
-/* Steps of each axis, by rounding the target; returns the most. */
+/* Steps of each motor, by rounding its target; returns the most. */
 static uint64_t find_steps(const struct passo_path_planner *path, const int64_t *target, int64_t *steps)
 {
 	uint64_t most = 0;
 
-	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
+	for (uint32_t motor = 0; motor < passo_path_motors(path); motor++) {
+		const int64_t place = passo_path_motor_place(path, motor, target);
 		const struct passo_u128 product =
-		    passo_multiply(passo_path_size(target[axis]), path->steps_per_mm[axis]);
+		    passo_multiply(passo_path_size(place), path->steps_per_mm[motor]);
 		const int64_t rounded = (int64_t)(product.high + (product.low >> 63)); /* below 2^63 */
 
-		steps[axis] = target[axis] < 0 ? -rounded : rounded;
-		most = passo_path_larger(most, passo_path_size(steps[axis] - path->at.steps[axis]));
+		steps[motor] = place < 0 ? -rounded : rounded;
+		most = passo_path_larger(most, passo_path_size(steps[motor] - path->at.steps[motor]));
 	}
 	return most;
 }
@@ -114,7 +136,7 @@ static void limit_line(
 	uint64_t slope = 2 * path->acceleration, weakest = slope, jump = PASSO_PATH_SPEED_MAX,
 		 jerk = UINT64_MAX;
 
-	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
+	for (uint32_t axis = 0; axis < passo_path_rows(path); axis++) {
 		const struct passo_path_scale *own = &path->axis[axis];
 		const uint32_t share = passo_path_size32(unit[axis]);
 
@@ -141,6 +163,15 @@ static void limit_line(
 	if (passo_path_is_soft(path))
 		passo_path_soften(item, jerk);
 	item->halt = (uint32_t)passo_path_smaller(jump, passo_path_smaller(item->feed, item->limit));
+}
+
+static void step_to(
+    struct passo_path_planner *path, uint32_t motor, int64_t steps, struct passo_path_item *item)
+{
+	item->steps[motor] = (uint32_t)passo_path_size(steps - path->at.steps[motor]);
+	if (steps < path->at.steps[motor])
+		item->directions |= (uint8_t)(1u << motor);
+	path->at.steps[motor] = steps;
 }
 
 enum passo_plan_error passo_path_measure(
@@ -182,12 +213,13 @@ enum passo_plan_error passo_path_measure(
 	    stretched ? 0 : (int32_t)(path->at.carry + (int64_t)length - (int64_t)(substeps << 16));
 	path->at.length = length;
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		item->steps[axis] = (uint32_t)passo_path_size(steps[axis] - path->at.steps[axis]);
-		if (steps[axis] < path->at.steps[axis])
-			item->directions |= (uint8_t)(1u << axis);
-		path->at.steps[axis] = steps[axis];
+		step_to(path, axis, steps[axis], item);
 		path->at.target[axis] = move->target[axis];
 		path->at.direction[axis] = unit[axis];
 	}
+	for (uint32_t motor = path->machine.axes; motor < passo_path_motors(path); motor++)
+		step_to(path, motor, steps[motor], item);
+	for (uint32_t row = path->machine.axes; row < passo_path_rows(path); row++)
+		path->at.direction[row] = unit[row];
 	return PASSO_PLAN_OK;
 }

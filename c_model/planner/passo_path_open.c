@@ -48,6 +48,10 @@ static uint32_t substeps_per_mm(const struct passo_path_settings *settings)
 
 	for (uint32_t axis = 0; axis < settings->machine.axes; axis++)
 		steps = passo_path_larger(steps, settings->axis[axis].steps_per_mm);
+#ifndef PASSO_CARTESIAN
+	if (settings->motors.count > 0) /* a motor that moves two axes moves by up to sqrt(2) mm per mm */
+		steps += steps / 2;
+#endif
 	const uint64_t least = (steps >> 32) * OVERSAMPLING_MIN + OVERSAMPLING_MIN;
 	const uint64_t wanted = passo_path_smaller(fastest / 2, SUBSTEPS_PER_MM_MAX);
 	return least > fastest ? 0 : (uint32_t)passo_path_larger(least, wanted);
@@ -91,6 +95,10 @@ static enum passo_plan_error check(const struct passo_path_settings *settings)
 		if (own->steps_per_mm > STEPS_PER_MM_MAX)
 			return PASSO_PLAN_TOO_FAST;
 	}
+#ifndef PASSO_CARTESIAN
+	if (!passo_path_has_motors(settings))
+		return PASSO_PLAN_BAD_AXES;
+#endif
 	return PASSO_PLAN_OK;
 }
 
@@ -145,6 +153,23 @@ static struct passo_path_scale scale_of(
 	};
 }
 
+#ifndef PASSO_CARTESIAN
+/* The motors: `steps_per_mm` of those behind the axes, and the rows of those that move two. */
+static void set_motors(struct passo_path_planner *path, const struct passo_path_settings *settings)
+{
+	path->motors = settings->motors;
+	path->rows = settings->machine.axes;
+	for (uint32_t motor = 0; motor < settings->motors.count; motor++) {
+		struct passo_path_axis mixed;
+
+		path->steps_per_mm[motor] =
+		    settings->axis[passo_motor_axis(&settings->motors, motor)].steps_per_mm;
+		if (passo_path_motor_limits(settings, motor, &mixed) == &mixed)
+			path->axis[path->rows++] = scale_of(path, &mixed);
+	}
+}
+#endif
+
 enum passo_plan_error passo_path_open(struct passo_path_planner *path,
     const struct passo_path_settings *settings, struct passo_path_item *items, uint32_t capacity)
 {
@@ -191,6 +216,9 @@ enum passo_plan_error passo_path_open(struct passo_path_planner *path,
 		path->axis[axis] = scale_of(path, &settings->axis[axis]);
 		path->steps_per_mm[axis] = settings->axis[axis].steps_per_mm;
 	}
+#ifndef PASSO_CARTESIAN
+	set_motors(path, settings);
+#endif
 	passo_path_pace(path, PACED_RAMPS, UINT32_MAX, PACED_LINES);
 	passo_path_restart(path, ORIGIN);
 	return PASSO_PLAN_OK;
@@ -198,14 +226,17 @@ enum passo_plan_error passo_path_open(struct passo_path_planner *path,
 
 void passo_path_restart(struct passo_path_planner *path, const int32_t *positions)
 {
+	for (uint32_t motor = path->machine.axes; motor < passo_path_motors(path); motor++)
+		path->at.steps[motor] = positions[motor];
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		const int64_t steps = positions[axis];
-		const uint64_t size = steps < 0 ? 0 - (uint64_t)steps : (uint64_t)steps;
-		const uint64_t target = passo_path_smaller(
-		    passo_divide((struct passo_u128){size, 0}, path->steps_per_mm[axis], NULL),
-		    PASSO_PATH_TARGET_MAX);
+		uint32_t parts = 1;
+		const int64_t steps = passo_path_axis_place(path, axis, positions, &parts);
+		const uint64_t target =
+		    passo_path_smaller(passo_divide((struct passo_u128){passo_path_size(steps), 0},
+					   path->steps_per_mm[axis] * parts, NULL),
+			PASSO_PATH_TARGET_MAX);
 
-		path->at.steps[axis] = steps;
+		path->at.steps[axis] = positions[axis];
 		path->at.target[axis] = steps < 0 ? -(int64_t)target : (int64_t)target;
 	}
 	path->sent = path->planned = path->added = path->final = 0;

@@ -18,6 +18,8 @@
 /* 1.0 of a unit vector. */
 #define PASSO_PATH_UNIT_BITS 30u
 #define PASSO_PATH_ONE (UINT32_C(1) << PASSO_PATH_UNIT_BITS)
+/* 1 / sqrt(2): a motor that moves two axes has its limits along a direction between them. */
+#define PASSO_PATH_HALF_ROOT INT64_C(759250125)
 
 /* Speeds up to half a substep per clock. */
 #define PASSO_PATH_SPEED_MAX (UINT64_C(1) << 31)
@@ -66,6 +68,17 @@ enum passo_path_need { PASSO_PATH_NO_NEED, PASSO_PATH_FULL, PASSO_PATH_DRY };
 static inline struct passo_path_item *passo_path_item(const struct passo_path_planner *path, uint32_t index)
 {
 	return &path->items[index % path->capacity];
+}
+
+/* Rows: directions in space that have limits, those of the axes and, behind them, those in which the motors
+ * that move two axes go. So all shares of a unit vector are at most 1. */
+static inline uint32_t passo_path_rows(const struct passo_path_planner *path)
+{
+#ifdef PASSO_CARTESIAN
+	return path->machine.axes;
+#else
+	return path->rows;
+#endif
 }
 
 static inline uint64_t passo_path_smaller(uint64_t a, uint64_t b)
@@ -236,6 +249,9 @@ uint64_t passo_path_gain(uint64_t slope, uint64_t length);
 /* Change of the velocity, UQ0.48, in `ticks` ticks. */
 uint64_t passo_path_change(const struct passo_path_planner *path, uint64_t slope, uint64_t ticks);
 
+/* Whether the map of motors has an inverse, room, and one scale for the axes of each motor. */
+bool passo_path_has_motors(const struct passo_path_settings *settings);
+
 /* Fills in the geometry and the limits of a line, and remembers it as the last one; *substeps is 0 if it is
  * too short to be a line. */
 enum passo_plan_error passo_path_measure(
@@ -248,8 +264,8 @@ struct passo_path_rounding {
 };
 
 struct passo_path_corner {
-	uint32_t change[PASSO_AXES_MAX]; /* of the direction, Q1.30 */
-	uint64_t turn;                   /* the sum of their squares */
+	uint32_t change[PASSO_AXES_MAX]; /* of the direction, by rows, Q1.30 */
+	uint64_t turn;                   /* the sum of their squares, of the axes */
 	struct passo_path_rounding rounding;
 	uint64_t over;                   /* UQ.30 substeps, in which it turns at a constant speed */
 	bool bends_before, bends_behind; /* the lines are parts of a curve */

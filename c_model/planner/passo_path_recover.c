@@ -7,11 +7,11 @@
 /* Steps by which the axes may be off the line: an abort drops those that wait for their pins. */
 #define TOLERANCE 5
 
-static int64_t steps_of(const struct passo_path_item *item, uint32_t axis)
+static int64_t steps_of(const struct passo_path_item *item, uint32_t motor)
 {
-	const int64_t steps = item->steps[axis];
+	const int64_t steps = item->steps[motor];
 
-	return item->directions >> axis & 1u ? -steps : steps;
+	return item->directions >> motor & 1u ? -steps : steps;
 }
 
 static int64_t magnitude(int64_t value)
@@ -19,14 +19,14 @@ static int64_t magnitude(int64_t value)
 	return value < 0 ? -value : value;
 }
 
-/* The axis with the most steps. */
+/* The motor with the most steps. */
 static uint32_t leader(const struct passo_path_planner *path, const struct passo_path_item *item)
 {
 	uint32_t found = 0;
 
-	for (uint32_t axis = 1; axis < path->machine.axes; axis++) {
-		if (item->steps[axis] > item->steps[found])
-			found = axis;
+	for (uint32_t motor = 1; motor < passo_path_motors(path); motor++) {
+		if (item->steps[motor] > item->steps[found])
+			found = motor;
 	}
 	return found;
 }
@@ -38,14 +38,14 @@ static bool is_on(
 	const uint32_t lead = leader(path, item);
 	const int64_t most = steps_of(item, lead);
 
-	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		const int64_t all = steps_of(item, axis);
+	for (uint32_t motor = 0; motor < passo_path_motors(path); motor++) {
+		const int64_t all = steps_of(item, motor);
 
-		if (magnitude(made[axis]) + magnitude(all - made[axis]) - magnitude(all) > 2 * TOLERANCE)
+		if (magnitude(made[motor]) + magnitude(all - made[motor]) - magnitude(all) > 2 * TOLERANCE)
 			return false;
 	}
-	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		if (magnitude(made[axis] * most - made[lead] * steps_of(item, axis))
+	for (uint32_t motor = 0; motor < passo_path_motors(path); motor++) {
+		if (magnitude(made[motor] * most - made[lead] * steps_of(item, motor))
 		    > TOLERANCE * magnitude(most))
 			return false;
 	}
@@ -59,13 +59,13 @@ static void shorten(const struct passo_path_planner *path, struct passo_path_ite
 	const uint32_t all = item->steps[lead];
 	uint32_t most = 1;
 
-	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		const int64_t left = steps_of(item, axis) - made[axis];
+	for (uint32_t motor = 0; motor < passo_path_motors(path); motor++) {
+		const int64_t left = steps_of(item, motor) - made[motor];
 
-		item->steps[axis] = (uint32_t)magnitude(left);
+		item->steps[motor] = (uint32_t)magnitude(left);
 		item->directions =
-		    (uint8_t)((item->directions & ~(1u << axis)) | (left < 0 ? 1u << axis : 0u));
-		most = item->steps[axis] > most ? item->steps[axis] : most;
+		    (uint8_t)((item->directions & ~(1u << motor)) | (left < 0 ? 1u << motor : 0u));
+		most = item->steps[motor] > most ? item->steps[motor] : most;
 	}
 	const uint64_t left = passo_mul_div(item->substeps, item->steps[lead], all);
 	item->substeps = (uint32_t)passo_path_smaller(passo_path_larger(left, most), PASSO_SUBSTEPS_MAX);
@@ -98,10 +98,10 @@ bool passo_path_recover(struct passo_path_planner *path, const int32_t *position
 	const uint32_t first = done > oldest ? done : oldest;
 	int64_t made[PASSO_AXES_MAX];
 
-	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		made[axis] = positions[axis] - path->at.steps[axis];
+	for (uint32_t motor = 0; motor < passo_path_motors(path); motor++) {
+		made[motor] = positions[motor] - path->at.steps[motor];
 		for (uint32_t index = first; index < path->added; index++)
-			made[axis] += steps_of(passo_path_item(path, index), axis);
+			made[motor] += steps_of(passo_path_item(path, index), motor);
 	}
 	for (uint32_t index = first; index < path->added; index++) {
 		struct passo_path_item *item = passo_path_item(path, index);
@@ -111,8 +111,8 @@ bool passo_path_recover(struct passo_path_planner *path, const int32_t *position
 			begin_at(path, index);
 			return true;
 		}
-		for (uint32_t axis = 0; axis < path->machine.axes; axis++)
-			made[axis] -= steps_of(item, axis);
+		for (uint32_t motor = 0; motor < passo_path_motors(path); motor++)
+			made[motor] -= steps_of(item, motor);
 	}
 	return false;
 }

@@ -5,6 +5,7 @@
 #ifndef PASSO_PATH_STATE_H
 #define PASSO_PATH_STATE_H
 
+#include "passo_motors.h"
 #include "passo_plan.h"
 
 /* An image without room has linear ramps only. */
@@ -19,7 +20,7 @@
 #define PASSO_PATH_HALVES 2u
 #endif
 
-/* Axes of a path, at most; an image for fewer saves RAM. */
+/* Motors of a path, or axes and motors that move two of them, at most; an image for fewer saves RAM. */
 #ifndef PASSO_PATH_AXES_MAX
 #define PASSO_PATH_AXES_MAX PASSO_AXES_MAX
 #endif
@@ -62,9 +63,9 @@ struct passo_path_item {
 	uint32_t substeps;
 	uint32_t dwell; /* ticks of rest before the line */
 	uint32_t output;
-	uint32_t steps[PASSO_PATH_AXES_MAX];
+	uint32_t steps[PASSO_PATH_AXES_MAX]; /* of the motors */
 	struct passo_path_curve curve;
-	uint8_t directions; /* bit i set: axis i counts down */
+	uint8_t directions; /* bit i set: motor i counts down */
 	bool rest;          /* the path rests before the line */
 	bool last;          /* the motion ends with the line */
 	uint8_t arc;        /* the corner at its start is a part of an arc with half the line before (bit 0),
@@ -97,9 +98,9 @@ struct passo_path_scale {
 
 /* Where a line begins, private: what the next one is measured from. */
 struct passo_path_place {
-	int64_t target[PASSO_PATH_AXES_MAX]; /* Q31.32 mm */
-	int64_t steps[PASSO_PATH_AXES_MAX];
-	int32_t direction[PASSO_PATH_AXES_MAX]; /* unit vector of the last line, Q1.30 */
+	int64_t target[PASSO_PATH_AXES_MAX];    /* Q31.32 mm */
+	int64_t steps[PASSO_PATH_AXES_MAX];     /* of the motors */
+	int32_t direction[PASSO_PATH_AXES_MAX]; /* unit vector of the last line, in rows, Q1.30 */
 	struct passo_path_curve curve;          /* of the last line, by the corner at its start */
 	uint64_t length;                        /* of the last line, UQ32.16 substeps */
 #ifndef PASSO_LINEAR_PATHS
@@ -123,17 +124,21 @@ struct passo_path_planner {
 	uint32_t capacity;
 	uint32_t sent, planned, added; /* items handed out as lines; passed by the ramps; known */
 	uint32_t final;                /* what is before the start of this item cannot become faster */
-	/* geometry of the last line */
-	uint64_t steps_per_mm[PASSO_PATH_AXES_MAX];
-	struct passo_path_scale axis[PASSO_PATH_AXES_MAX];
-	uint64_t acceleration;              /* UQ0.64 substeps per clock^2, along the path */
-	struct passo_path_place at, before; /* its end and its start */
-	uint64_t deviation, tolerance;      /* UQ32.16 substeps */
-	uint64_t own_tolerance;             /* the same: that of the settings */
-	struct passo_path_merged merged;    /* by how much the last line is off those that it replaces */
-	uint64_t feed;                      /* of the last line, as it was given */
-	uint32_t wanted;                    /* the same, UQ0.32 */
-	bool begins;                        /* the path rested before the last line */
+				       /* geometry of the last line */
+#ifndef PASSO_CARTESIAN
+	struct passo_motors motors;
+	uint8_t rows; /* axes, and motors that move two */
+#endif
+	uint64_t steps_per_mm[PASSO_PATH_AXES_MAX];        /* of the motors */
+	struct passo_path_scale axis[PASSO_PATH_AXES_MAX]; /* of the rows */
+	uint64_t acceleration;                             /* UQ0.64 substeps per clock^2, along the path */
+	struct passo_path_place at, before;                /* its end and its start */
+	uint64_t deviation, tolerance;                     /* UQ32.16 substeps */
+	uint64_t own_tolerance;                            /* the same: that of the settings */
+	struct passo_path_merged merged; /* by how much the last line is off those that it replaces */
+	uint64_t feed;                   /* of the last line, as it was given */
+	uint32_t wanted;                 /* the same, UQ0.32 */
+	bool begins;                     /* the path rested before the last line */
 	bool open; /* the last line may still become a longer one: no ramp relies on it */
 	uint32_t substeps_per_mm;
 	uint32_t dwell; /* ticks before the next line */

@@ -20,6 +20,9 @@ long as they take to change DIR, with those behind it: at these times the axis m
 later.
 
 An axis with a start-stop speed may also jump by that, once in a window.
+
+The axes of a machine whose motors move two of them are the means of their motors, and so is their `e`;
+beside the axes it has the limits of these motors, along the directions between the two axes.
 """
 
 from collections.abc import Sequence
@@ -44,7 +47,7 @@ NEARLY = 1.01  # of the time that a change of DIR takes: a step that left later 
 
 @dataclass(frozen=True)
 class Share:
-    """The greatest share of a limit: of which axis, in which window, and when."""
+    """The greatest share of a limit: of which axis or, behind these, motor, in which window, and when."""
 
     name: str
     axis: int
@@ -66,14 +69,14 @@ class Share:
 
 @dataclass(frozen=True)
 class Marks:
-    """Times (s, ascending) of the corners, and corner x axis: by how much they may be rounded (mm)."""
+    """Times (s, ascending) of the corners, and corner x limit: by how much they may be rounded (mm)."""
 
     time: np.ndarray
     off: np.ndarray
 
     @classmethod
     def none(cls, axes: int) -> "Marks":
-        """A path without corners."""
+        """A path without corners, with this number of limits."""
         return cls(np.empty(0), np.empty((0, axes)))
 
     @classmethod
@@ -86,23 +89,24 @@ class Marks:
     ) -> "Marks":
         """The corners of a path of lines from the origin: each between its last step and the next one."""
         path = rounded(lines, settings)
-        scale = np.array([float(axis.steps_per_mm) for axis in settings.axes])
-        places = np.round(path.points * scale).astype(int)
+        own = path.points @ settings.motors.map(len(settings.axes)).T
+        places = np.round(own * settings.scales).astype(int)
         corners = path.kept[1:-1]
         begin, end = np.zeros(len(path.corner)), np.full(len(path.corner), np.inf)
-        for axis, clock in enumerate(clocks):
+        for motor, clock in enumerate(clocks):
             time = clock / settings.clock_hz
-            wanted = np.cumsum(np.abs(np.diff(places[:, axis])))[corners - 1]
-            done = _steps_until(places[corners, axis], wanted, positions[axis])
+            wanted = np.cumsum(np.abs(np.diff(places[:, motor])))[corners - 1]
+            done = _steps_until(places[corners, motor], wanted, positions[motor])
             begin = np.maximum(begin, np.concatenate([[0.0], time])[done])
             end = np.minimum(end, np.append(time, np.inf)[done])
         end = np.maximum(begin, np.where(np.isinf(end), begin, end))
         order = np.argsort(np.concatenate([begin, end]))
-        return cls(np.concatenate([begin, end])[order], np.concatenate([path.off, path.off])[order])
+        off = path.off_along(np.array([direction for direction, _ in settings.limits()]))
+        return cls(np.concatenate([begin, end])[order], np.concatenate([off, off])[order])
 
 
 def _steps_until(places: np.ndarray, wanted: np.ndarray, positions: np.ndarray) -> np.ndarray:
-    """How many steps an axis has made when it is at each of these places, in turn; `wanted`: of the lines.
+    """How many steps a motor has made when it is at each of these places, in turn; `wanted`: of the lines.
 
     It makes fewer where lines are merged: at the far end of a curve it need not go there and back. So of all
     times at which it is at a place it is the one nearest to that, less what was missing at the last place.
@@ -127,14 +131,19 @@ def shares(
     names: Sequence[str] = NAMES,
     turning: int = 0,
 ) -> list[Share]:
-    """The greatest share of each limit of each axis, by the clocks of its steps and the positions after.
+    """The greatest share of each limit, by the clocks of the steps of the motors and the positions after.
 
     `turning`: clocks by which a step may leave late where DIR changes, those of all its intervals.
     """
-    known, found = marks or Marks.none(len(settings.axes)), []
+    limits, found = settings.limits(), []
+    known = marks or Marks.none(len(limits))
+    motors = [
+        Places.of(clock / settings.clock_hz, position, scale)
+        for clock, position, scale in zip(clocks, positions, settings.scales, strict=True)
+    ]
     end = max((float(own[-1]) for own in clocks if len(own)), default=0.0) / settings.clock_hz
-    for number, axis in enumerate(settings.axes):
-        place = Places.of(clocks[number] / settings.clock_hz, positions[number], float(axis.steps_per_mm))
+    for number, (direction, axis) in enumerate(limits):
+        place = Mean.of(direction, motors, settings)
         off = Most.of(known.time, known.off[:, number])
         for order, name in enumerate(NAMES, 1):
             limit = float(getattr(axis, name))
@@ -185,6 +194,39 @@ class Places:
 
 
 @dataclass(frozen=True)
+class Mean:
+    """What moves along a direction: the motors that say so, each by its weight."""
+
+    motors: list[tuple[float, Places]]
+
+    @classmethod
+    def of(cls, direction: np.ndarray, motors: Sequence[Places], settings: PathSettings) -> "Mean":
+        """Each axis is the mean of its motors."""
+        rows = settings.motors.map(len(direction))
+        weights = rows @ (direction / np.abs(rows).sum(axis=0))
+        return cls(
+            [
+                (float(weight), motor)
+                for weight, motor in zip(weights, motors, strict=True)
+                if abs(weight) > 1e-9
+            ]
+        )
+
+    @property
+    def rounding(self) -> float:
+        """Of all together, mm."""
+        return sum(abs(weight) * motor.rounding for weight, motor in self.motors)
+
+    def at(self, times: np.ndarray) -> np.ndarray:
+        """Places at these times."""
+        return np.sum([weight * motor.at(times) for weight, motor in self.motors], axis=0)
+
+    def late(self, times: np.ndarray, turning: float) -> np.ndarray:
+        """How far it is late at these times, at most."""
+        return np.sum([abs(weight) * motor.late(times, turning) for weight, motor in self.motors], axis=0)
+
+
+@dataclass(frozen=True)
 class Most:
     """The greatest of values within an interval of time."""
 
@@ -228,7 +270,7 @@ def windows(order: int, limit: float, rounding: float, off: float) -> tuple[floa
 
 
 def _greatest(
-    place: Places, off: Most, turning: float, axis: PathAxis, number: int, order: int, end: float
+    place: Mean, off: Most, turning: float, axis: PathAxis, number: int, order: int, end: float
 ) -> Share:
     limit, jump = float(getattr(axis, NAMES[order - 1])), float(axis.jump) if order > 1 else 0.0
     highest = off.highest if order > 1 else 0.0

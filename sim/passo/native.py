@@ -19,6 +19,7 @@ HEADERS = (
     paths.protocol / "passo_crc.h",
     paths.planner / "passo_moves.h",
     paths.planner / "passo_plan.h",
+    paths.planner / "passo_motors.h",
     paths.planner / "passo_path_state.h",
     paths.planner / "passo_path.h",
     *(

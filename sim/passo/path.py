@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
+import numpy as np
+
 from passo.build import Parameters
 from passo.driver import Driver, DriverError
 from passo.moves import q32
@@ -29,6 +31,25 @@ class PathAxis:
 
 
 @dataclass(frozen=True)
+class Motors:
+    """Which axes each motor moves; see passo_motors.h. `mixed`: limits of each motor that moves two."""
+
+    rows: tuple[tuple[int, ...], ...] = ()  # motor x axis: -1, 0, 1; none: a motor for each axis
+    mixed: PathAxis = PathAxis(0, 0, 0)  # 0: the larger one of the two axes
+
+    def map(self, axes: int) -> np.ndarray:
+        """Motor x axis."""
+        return np.array(self.rows or np.eye(axes, dtype=int))
+
+    def axes_of(self, motors: np.ndarray) -> np.ndarray:
+        """Places of the axes, from a column per motor."""
+        if not self.rows:
+            return motors
+        rows = np.array(self.rows)
+        return motors @ rows / np.abs(rows).sum(axis=0)
+
+
+@dataclass(frozen=True)
 class PathSettings:
     """The machine that a path is planned for; see struct passo_path_settings."""
 
@@ -41,6 +62,30 @@ class PathSettings:
     reserve_clocks: int = 0
     polls: int = 0  # of the feed in a second, at least; 0: 500
     unrounded: bool = False  # no constant speed around lone corners
+    motors: Motors = Motors()
+
+    @property
+    def scales(self) -> list[float]:
+        """Steps per mm of each motor."""
+        own = [float(axis.steps_per_mm) for axis in self.axes]
+        return [own[int(np.flatnonzero(row)[0])] for row in self.motors.map(len(own))]
+
+    def limits(self) -> list[tuple[np.ndarray, PathAxis]]:
+        """Directions of length 1 that have limits, and these: axes, then motors that move two of them."""
+        rows = self.motors.map(len(self.axes))
+        found = list(zip(np.eye(len(self.axes)), self.axes, strict=True))
+        for row in rows[np.abs(rows).sum(axis=1) > 1]:
+            size = float(np.linalg.norm(row))
+            moved = [axis for axis, part in zip(self.axes, row, strict=True) if part]
+            own = {
+                name: float(
+                    getattr(self.motors.mixed, name) or max(float(getattr(axis, name)) for axis in moved)
+                )
+                / size
+                for name in ("speed", "acceleration", "jerk", "jump")
+            }
+            found.append((row / size, PathAxis(float(moved[0].steps_per_mm) * size, **own)))
+        return found
 
     def struct(self, parameters: Parameters) -> Any:
         """The `struct passo_path_settings`."""
@@ -57,6 +102,12 @@ class PathSettings:
                 "reserve_clocks": self.reserve_clocks,
                 "polls": self.polls,
                 "unrounded": self.unrounded,
+                "motors": (
+                    len(self.motors.rows),
+                    [sum((part > 0) << axis for axis, part in enumerate(row)) for row in self.motors.rows],
+                    [sum((part < 0) << axis for axis, part in enumerate(row)) for row in self.motors.rows],
+                ),
+                "mixed": {name: q32(getattr(self.motors.mixed, name)) for name in names},
             },
         )
 

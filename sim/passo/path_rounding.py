@@ -64,14 +64,13 @@ class Rounded:
         """Of each corner: no other one is near enough to matter."""
         return (self.before >= self.arc * NEARLY) & (self.behind >= self.arc * NEARLY)
 
-    @property
-    def off(self) -> np.ndarray:
-        """corner x axis: by how much the path may be off the lines, on either side."""
+    def off_along(self, directions: np.ndarray) -> np.ndarray:
+        """corner x direction: by how much the path may be off the lines along it, on either side."""
         size = np.linalg.norm(self.turn, axis=1)
         least, most = np.minimum(self.before, self.behind), np.maximum(self.before, self.behind)
         found = np.minimum(size * np.maximum((least + most) / 16, (most - least) / 4), self.deviation)
         found = np.where(self.alone, self.deviation, found)
-        return np.abs(self.turn) * (found / np.maximum(size, STRAIGHT))[:, None]
+        return np.abs(self.turn @ directions.T) * (found / np.maximum(size, STRAIGHT))[:, None]
 
 
 def points_of(

@@ -23,7 +23,7 @@ LOOP_CLOCKS = 64_000  # a millisecond between two polls
 
 @dataclass
 class Played:
-    """Steps of each axis: clocks since the start of the first motion, and positions after them."""
+    """Steps of each motor: clocks since the start of the first motion, and positions after them."""
 
     clocks: list[np.ndarray]
     steps: list[np.ndarray]
@@ -44,7 +44,7 @@ class Player:
         self.settings, self.loop = settings, loop
         self.engine: Engine = model_engine(Parameters(**{"axes": 4, **parameters}), settings.clock_hz)
         self.driver = Driver(self.engine, settings.clock_hz, self.engine.parameters)
-        for axis in range(len(settings.axes)):
+        for axis in range(len(settings.scales)):
             self.driver.configure_axis(axis, PINS)
         self.driver.call("configure_motion", SLEW_MICROSECONDS, SLEW_MICROSECONDS, 1 << 20)
         self.path = Path(settings, self.engine.parameters, look_ahead)
@@ -80,7 +80,7 @@ class Player:
 
     def played(self) -> Played:
         self.turns.run(1000)
-        axes = len(self.settings.axes)
+        axes = len(self.settings.scales)
         steps = self.turns.steps(axes)
         ends = [*steps.ends, self.engine.clock - steps.origin][: len(steps.begins)]
         return Played(
