@@ -31,6 +31,8 @@ struct passo_rig_wire {
 	bool is_switch;     /* it is active from position `at` of `axis` on, upward if `above` */
 	bool above;
 	uint8_t axis;
+	uint8_t other; /* of a switch of an axis that two motors move: it is where their sum is `at`, */
+	int8_t share;  /* of this sign; 0: where `axis` is */
 	int64_t at, hysteresis;
 	uint64_t bounce;        /* clocks of chatter after every change */
 	uint64_t every, glitch; /* noise: mean clocks from one glitch to the next, 0: none; their length */

@@ -50,7 +50,7 @@ void rig_switch(struct passo_rig *rig, unsigned number)
 {
 	const struct passo_rig_wire *fitted = &rig->config.wire[number];
 	struct wire *wire = &rig->wire[number];
-	const int64_t here = rig->position[fitted->axis];
+	const int64_t here = rig->position[fitted->axis] + fitted->share * rig->position[fitted->other];
 	const int64_t beyond = fitted->above ? here - fitted->at : fitted->at - here;
 
 	wire->beyond = fitted->is_switch && beyond >= (wire->beyond ? -fitted->hysteresis : 0);

@@ -9,6 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from passo.build import Parameters
 from passo.engine import NUMBERS
 from passo.failure import BadInputError
@@ -59,8 +61,7 @@ def default_settings(machine: MachineFile) -> Any:
     ends, switches, pins = machine.ends, machine.switches, machine.pins
     pulse, turn = max(pins.step_high, pins.step_low), max(pins.dir_setup, pins.dir_hold)
     try:
-        limits = machine.settings.axes, machine.settings.junction_deviation
-        check_pins(*limits, PinTiming(pulse, pulse, turn, turn), machine.clock_hz)
+        check_pins(machine.settings, PinTiming(pulse, pulse, turn, turn))
     except BadValueError as error:
         raise BadInputError(f"{machine.path}: as $0 and $29: {error}") from None
     values = {
@@ -119,10 +120,9 @@ def setup_of(machine: MachineFile, parameters: Parameters, defaults: Any, pages:
     made = ffi().new("struct passo_grbl_setup *")
     made.path = machine.settings.struct(parameters)[0]
     made.defaults = defaults
+    made.limits_low, made.limits_high = machine.mask("limit_low"), machine.mask("limit_high")
+    made.homes = machine.mask("home")
     for axis, end in enumerate(machine.ends):
-        made.limits_low |= ("limit_low" in end.switches) << axis
-        made.limits_high |= ("limit_high" in end.switches) << axis
-        made.homes |= ("home" in end.switches) << axis
         made.homed |= (end.home is not None) << axis
     made.probe, made.pages = machine.switches.probe, pages
     return made
@@ -130,7 +130,7 @@ def setup_of(machine: MachineFile, parameters: Parameters, defaults: Any, pages:
 
 def core_for(machine: MachineFile) -> Parameters:
     """The core that a machine needs."""
-    core = parameters_for(len(machine.settings.axes))
+    core = parameters_for(len(machine.motors))
     return replace(core, clock_hz=machine.clock_hz, **dict.fromkeys(machine.parts, 1))
 
 
@@ -141,18 +141,30 @@ def attach(engine: Any, machine: MachineFile) -> None:
     """
     config = ffi().new("struct passo_rig_config *")
     config.axes = engine.parameters.channels * engine.parameters.axes
-    wires = []
-    for axis, (limits, end) in enumerate(zip(machine.settings.axes, machine.ends, strict=True)):
-        travel = round(float(limits.steps_per_mm) * end.travel)
-        config.start[axis] = travel // 2
+    rows, wires = machine.settings.motors.map(len(machine.ends)), []
+    travels = [
+        round(float(limits.steps_per_mm) * end.travel)
+        for limits, end in zip(machine.settings.axes, machine.ends, strict=True)
+    ]
+    for motor, start in enumerate(rows @ np.array(travels) // 2):
+        config.start[motor] = start
+    for axis, (travel, end) in enumerate(zip(travels, machine.ends, strict=True)):
         for switch in end.switches:
             above = "limit_high" in (switch, f"limit_{end.home}")
-            wires.append((NUMBERS[switch], axis, axis, above, travel if above else 0))
+            wires += [
+                (NUMBERS[switch], motor, axis, above, travel if above else 0)
+                for motor in range(len(rows))
+                if machine.mask(switch) >> motor & 1 and motor in machine.motors_of(axis)
+            ]
     if machine.switches.probe:
         axis = min(len(machine.ends), PROBED) - 1
-        wires.append((NUMBERS["probe"], 0, axis, False, config.start[axis] // 2))
+        wires.append((NUMBERS["probe"], 0, axis, False, travels[axis] // 4))
     for wire, (pin, bit, axis, above, at) in zip(config.wire, wires, strict=False):
-        wire.input, wire.bit, wire.axis, wire.above, wire.at = pin, bit, axis, above, at
+        wire.input, wire.bit, wire.above = pin, bit, above
+        wire.axis, wire.at = (bit if pin != NUMBERS["probe"] else axis), at
+        if len(mixed := np.flatnonzero(rows[:, axis] * (np.abs(rows).sum(axis=1) > 1))):
+            wire.axis, wire.other = (int(motor) for motor in mixed)
+            wire.share, wire.at = rows[wire.other][axis], 2 * at
         wire.is_switch, wire.inverted = True, machine.switches.inverted and pin != NUMBERS["probe"]
     config.wires = len(wires)
     engine.attach(config)

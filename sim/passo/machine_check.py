@@ -46,10 +46,10 @@ BLINK_COUNT, BLINK = 3, 0.3  # seconds
 
 
 class Input(NamedTuple):
-    """A wired input: its pin of the core, a bit of it, its name, and its letter in a status report."""
+    """A wired input: its pin of the core, bits of it, its name, and its letter in a status report."""
 
     pin: str
-    bit: int
+    bits: int
     name: str
     letter: str
 
@@ -128,7 +128,7 @@ class SimulatedPort:
             pressed.pin != "probe" and self._machine.switches.inverted
         )
         level = active != low_is_active
-        bits = self._levels.get(pressed.pin, 0) & ~(1 << pressed.bit) | level << pressed.bit
+        bits = self._levels.get(pressed.pin, 0) & ~pressed.bits | level * pressed.bits
         self._levels[pressed.pin] = bits
         self.engine.set(pressed.pin, bits)
 
@@ -153,12 +153,14 @@ def all_inputs(machine: MachineFile) -> list[Input]:
         "limit_high": "limit at the high end",
     }
     found = [
-        Input(switch, axis, f"{AXIS_LETTERS[axis]}: {names[switch]}", AXIS_LETTERS[axis])
+        Input(
+            switch, machine.bits(switch, axis), f"{AXIS_LETTERS[axis]}: {names[switch]}", AXIS_LETTERS[axis]
+        )
         for axis, end in enumerate(machine.ends)
         for switch in dict.fromkeys(end.switches)
     ]
-    probe = [Input("probe", 0, "probe", "P")] if machine.switches.probe else []
-    return [*found, *probe, Input("estop_n", 0, "e-stop", "R")]
+    probe = [Input("probe", 1, "probe", "P")] if machine.switches.probe else []
+    return [*found, *probe, Input("estop_n", 1, "e-stop", "R")]
 
 
 class _Check:

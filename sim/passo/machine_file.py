@@ -9,17 +9,20 @@ from decimal import ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
 from pathlib import Path
 
+import numpy as np
+
 from passo.drives import drives
 from passo.failure import BadInputError
 from passo.gcode import AXIS_LETTERS, GcodeSettings
 from passo.move_file import read_pins
 from passo.moves import PinTiming
-from passo.path import PathAxis, PathSettings
+from passo.path import Motors, PathAxis, PathSettings
 from passo.table_values import (
     Table,
     check_known,
     read_clock_hz,
     read_flag,
+    read_integer,
     read_number,
     read_positive,
     read_subtable,
@@ -32,9 +35,15 @@ from passo.values import BadValueError, Written, shown
 
 FILE_KEYS = (
     *("board", "clock_hz", "junction_deviation", "arc_tolerance", "profile", "spindle_maximum", "laser"),
-    *("soft_limits", "probe", "drive", "chip", "pins", "switches", "home", "axis"),
+    *("soft_limits", "probe", "drive", "chip", "kinematics", "pins", "switches", "home", "motors", "axis"),
 )
-AXIS_KEYS = ("name", "steps_per_mm", "speed", "acceleration", "jerk", "jump", "travel", "home", "switches")
+AXIS_KEYS = (
+    *("name", "steps_per_mm", "speed", "acceleration", "jerk", "jump", "travel", "home", "switches"),
+    "motors",
+)
+MOTOR_KEYS = ("speed", "acceleration", "jerk")
+KINEMATICS = {"cartesian": (), "corexy": (0, 1), "corexz": (0, 2)}  # the two axes that share two motors
+MOTORS_MOST = 3  # of an axis
 ENABLE_INVERTED = "enable_inverted"
 SWITCH_KEYS = ("inverted", "debounce", "stop")
 HOME_KEYS = ("seek", "speed", "pull_off")
@@ -54,6 +63,7 @@ class AxisEnds:
     travel: float = TRAVEL  # mm
     home: str | None = None  # the end with its home
     switches: tuple[str, ...] = ()
+    motors: int = 1
 
     @property
     def homing_switch(self) -> str | None:
@@ -92,6 +102,39 @@ class MachineFile:
     board: str = ""  # a folder of syn/, or none
     drive: str = ""  # a name of drives.toml, or none
     chip: str = CHIPS[0]  # of the firmware
+    kinematics: str = "cartesian"
+
+    @property
+    def motors(self) -> list[str]:
+        """Names of the motors, in the order of the core: X, Y, Z, Y2, or X+Y, X-Y, Z."""
+        rows, names, count = self.settings.motors.map(len(self.ends)), [], dict.fromkeys(AXIS_LETTERS, 0)
+        for row in rows:
+            moved = [(AXIS_LETTERS[axis], "-" if part < 0 else "+") for axis, part in enumerate(row) if part]
+            name = "".join(sign + letter for letter, sign in moved).removeprefix("+")
+            if len(moved) == 1:
+                count[name] += 1
+                name += str(count[name]) if count[name] > 1 else ""
+            names.append(name)
+        return names
+
+    @property
+    def limited(self) -> list[str]:
+        """Names of what has limits: the axes, and the motors that move two of them."""
+        own = [name for name in self.motors if len(name) > 2]
+        return [*AXIS_LETTERS[: len(self.ends)], *own]
+
+    def motors_of(self, axis: int) -> list[int]:
+        """The motors that an axis is named after: its own, and those behind the axes."""
+        rows = self.settings.motors.map(len(self.ends))
+        return [axis, *(motor for motor in range(len(self.ends), len(rows)) if rows[motor][axis])]
+
+    def bits(self, switch: str, axis: int) -> int:
+        """The inputs of the core that a switch of an axis is at: a limit is at all of its motors."""
+        return sum(1 << motor for motor in (self.motors_of(axis) if switch != "home" else [axis]))
+
+    def mask(self, switch: str) -> int:
+        """The inputs of the core with a switch, a bit per motor."""
+        return sum(self.bits(switch, axis) for axis, end in enumerate(self.ends) if switch in end.switches)
 
     @property
     def has_inputs(self) -> bool:
@@ -141,12 +184,16 @@ def _machine(path: Path, data: Table) -> MachineFile:
     ends = tuple(
         within(f"axis {number}", lambda table=table: _ends(table)) for number, table in enumerate(tables, 1)
     )
+    kinematics, motors = _motors(data, axes, ends)
     switches = _switches(data)
     spindle = read_positive(data, "spindle_maximum") if "spindle_maximum" in data else 0
-    board, clock_hz = _board(data, wanted_hz, ends, _parts(ends, switches, spindle))
+    board, clock_hz = _board(
+        data, wanted_hz, ends, len(motors.map(len(axes))), _parts(ends, switches, spindle)
+    )
     timing = within("pins", lambda: read_pins(pins, clock_hz, (ENABLE_INVERTED,)))
     deviation = _number(data, "junction_deviation", JUNCTION_DEVIATION)
-    check_pins(axes, deviation, timing, clock_hz)
+    settings = PathSettings(axes, clock_hz, junction_deviation=deviation, profile=profile, motors=motors)
+    check_pins(settings, timing)
     if switches.soft_limits and not any(end.home for end in ends):
         raise BadValueError("soft_limits: no axis has a home")
     tolerance = _number(data, "arc_tolerance", ARC_TOLERANCE)
@@ -154,12 +201,7 @@ def _machine(path: Path, data: Table) -> MachineFile:
         raise BadValueError("arc_tolerance must be greater than 0")
     return MachineFile(
         path,
-        PathSettings(
-            axes,
-            clock_hz,
-            junction_deviation=deviation,
-            profile=profile,
-        ),
+        settings,
         GcodeSettings(len(axes), tolerance, spindle),
         timing,
         ends,
@@ -169,7 +211,61 @@ def _machine(path: Path, data: Table) -> MachineFile:
         board,
         data.get("drive", ""),
         read_word(data, "chip", CHIPS) if "chip" in data else CHIPS[0],
+        kinematics,
     )
+
+
+def _motors(data: Table, axes: Sequence[PathAxis], ends: Sequence[AxisEnds]) -> tuple[str, Motors]:
+    """The kinematics and the map: an axis and its motor in order, then the further motors of the axes."""
+    kinematics = read_word(data, "kinematics", tuple(KINEMATICS)) if "kinematics" in data else "cartesian"
+    shared, rows = KINEMATICS[kinematics], np.eye(len(axes), dtype=int)
+    table = read_subtable(data, "motors")
+    within("motors", lambda: check_known(table, MOTOR_KEYS))
+    if shared:
+        _check_shared(kinematics, shared, axes, ends)
+        one, other = shared
+        rows[one, other], rows[other, one], rows[other, other] = 1, 1, -1
+    elif table:
+        raise BadValueError(
+            'motors: its limits are those of motors that two axes share: kinematics = "corexy"'
+        )
+    more = [rows[axis] for axis, end in enumerate(ends) for _ in range(end.motors - 1)]
+    if len(axes) + len(more) > len(AXIS_LETTERS):
+        raise BadValueError(f"there are {len(axes) + len(more)} motors; must be at most {len(AXIS_LETTERS)}")
+    limits = {key: read_number(table, key) if key in table else 0 for key in MOTOR_KEYS}
+    for key, value in limits.items():
+        if key in table and not value:
+            raise BadValueError(f"motors: {key} must be greater than 0")
+    if not shared and not more:
+        return kinematics, Motors()
+    made = tuple(tuple(int(part) for part in row) for row in [*rows, *more])
+    return kinematics, Motors(made, PathAxis(0, **limits))
+
+
+def _check_shared(
+    kinematics: str, shared: Sequence[int], axes: Sequence[PathAxis], ends: Sequence[AxisEnds]
+) -> None:
+    """What contradicts two axes that share two motors."""
+    if len(axes) <= max(shared):
+        raise BadValueError(f'kinematics = "{kinematics}" needs an axis {AXIS_LETTERS[max(shared)]}')
+    one, other = (axes[axis].steps_per_mm for axis in shared)
+    letters = " and ".join(AXIS_LETTERS[axis] for axis in shared)
+    if one != other:
+        raise BadValueError(
+            f'kinematics = "{kinematics}": {letters} share their motors, '
+            f"but steps_per_mm is {float(one):g} and {float(other):g}"
+        )
+    for axis in shared:
+        if ends[axis].motors > 1:
+            raise BadValueError(
+                f'axis {axis + 1}: motors is {ends[axis].motors}, but with kinematics = "{kinematics}" '
+                f"{letters} share two"
+            )
+        if limit := next((switch for switch in ends[axis].switches if switch != "home"), None):
+            raise BadValueError(
+                f"axis {axis + 1}: switches: {limit} would block a motor that also moves another axis: "
+                'use "home"'
+            )
 
 
 def _parts(ends: Sequence[AxisEnds], switches: Switches, spindle_maximum: int) -> tuple[str, ...]:
@@ -178,7 +274,7 @@ def _parts(ends: Sequence[AxisEnds], switches: Switches, spindle_maximum: int) -
 
 
 def _board(
-    data: Table, wanted: int | None, ends: Sequence[AxisEnds], parts: Sequence[str]
+    data: Table, wanted: int | None, ends: Sequence[AxisEnds], motors: int, parts: Sequence[str]
 ) -> tuple[str, int]:
     """The board, if there is one, and the clock that is wanted, or that of the board with these parts."""
     if "board" not in data:
@@ -191,7 +287,7 @@ def _board(
     name = read_word(data, "board", tuple(boards.names()))
     try:
         board = boards.board(name)
-        parameters = board.parameters(len(ends), wanted and wanted / 1e6, parts)
+        parameters = board.parameters(motors, wanted and wanted / 1e6, parts)
     except PllError as error:
         raise BadValueError(f"clock_hz: {error}") from None
     except BoardError as error:
@@ -217,11 +313,13 @@ def _pins(data: Table) -> tuple[Table, bool]:
     return {**drive.pins, **own}, inverted
 
 
-def check_pins(axes: Sequence[PathAxis], deviation: float, pins: PinTiming, clock_hz: int) -> None:
-    """Raises BadValueError for an axis that is too fast for the pins, with its highest speed."""
-    for number, axis in enumerate(axes, 1):
-        within(f"axis {number}", lambda axis=axis: _check_speed(axis, pins, clock_hz))
-        within(f"axis {number}", lambda axis=axis: _check_reversal(axis, deviation, pins, clock_hz))
+def check_pins(settings: PathSettings, pins: PinTiming) -> None:
+    """Raises BadValueError for an axis or a motor that is too fast for the pins, with its highest speed."""
+    clock_hz, deviation = settings.clock_hz, float(settings.junction_deviation)
+    for number, (_, axis) in enumerate(settings.limits(), 1):
+        name = f"axis {number}" if number <= len(settings.axes) else "motors"
+        within(name, lambda axis=axis: _check_speed(axis, pins, clock_hz))
+        within(name, lambda axis=axis: _check_reversal(axis, deviation, pins, clock_hz))
 
 
 def _check_speed(axis: PathAxis, pins: PinTiming, clock_hz: int) -> None:
@@ -287,7 +385,8 @@ def _ends(table: Table) -> AxisEnds:
     travel = _number(table, "travel", TRAVEL)
     if not travel:
         raise BadValueError("travel must be greater than 0")
-    ends = AxisEnds(travel, home, tuple(switches))
+    motors = read_integer(table, "motors", 1, MOTORS_MOST) if "motors" in table else 1
+    ends = AxisEnds(travel, home, tuple(switches), motors)
     if ends.homing_switch not in (None, *switches):
         raise BadValueError(f'home = "{home}" needs "home" or "{ends.homing_switch}" in switches')
     return ends

@@ -22,10 +22,11 @@ from passo.drives import drives
 from passo.failure import BadInputError, Failure
 from passo.gcode import AXIS_LETTERS
 from passo.grbl_setup import MILLION, default_settings
-from passo.machine_file import CHIPS, MachineFile, read_machine
+from passo.machine_file import CHIPS, MOTOR_KEYS, MachineFile, read_machine
 from passo.machine_sheet import Sheet, Wire, draw, page
 from passo.native import ffi, planner
 from passo.output import empty_folder, write_text
+from passo.path import Motors
 from passo.pins import INPUTS
 from passo.toolchain import need_repository, paths
 
@@ -103,9 +104,21 @@ def _check_firmware(machine: MachineFile) -> None:
         raise BadInputError(
             f'{machine.path}: profile is "{profile}"; the ramps of the firmware for {chip} are {allowed}'
         )
+    if machine.settings.motors.rows and chip != LARGE:
+        raise BadInputError(
+            f"{machine.path}: the motors are {', '.join(machine.motors)}; "
+            f'the firmware for {chip} has one for each axis, chip = "{LARGE}" has others'
+        )
+    if any(float(getattr(machine.settings.motors.mixed, key)) % 1 for key in MOTOR_KEYS):
+        raise BadInputError(f"{machine.path}: motors: the firmware takes whole numbers")
     if axes > CHIP_AXES[chip]:
         most = f'the firmware for {chip} has {CHIP_AXES[chip]}, chip = "{LARGE}" {CHIP_AXES[LARGE]}'
         raise BadInputError(f"{machine.path}: there are {axes} axes; {most}")
+    if len(machine.limited) > CHIP_AXES[chip]:
+        raise BadInputError(
+            f"{machine.path}: there are limits of {', '.join(machine.limited)}; "
+            f"the firmware has room for {CHIP_AXES[chip]}"
+        )
     for letter, axis in zip(AXIS_LETTERS, machine.settings.axes, strict=False):
         for key in ("jump", "jerk"):
             if getattr(axis, key) and key != profile:
@@ -158,7 +171,7 @@ def settings_lines(machine: MachineFile) -> list[str]:
 
 def _wires(machine: MachineFile, chosen: Board) -> Iterator[Wire]:
     where, host = places(chosen.name), host_pins()
-    for port, pin in chosen.ports(len(machine.settings.axes), machine.parts).items():
+    for port, pin in chosen.ports(len(machine.motors), machine.parts).items():
         if port != OSCILLATOR:
             name, index = re.fullmatch(r"(\w+?)(?:\[(\d+)\])?", port).groups()
             there = where.get(port if index else f"{name}[0]", where.get(port, ""))
@@ -176,11 +189,15 @@ def _end(machine: MachineFile, chosen: Board, host: dict[str, str], name: str, i
     if name in host:
         return f"Blue Pill {host[name]}"
     if name in AXIS_PORTS:
-        return f"drive {AXIS_LETTERS[index]}: {AXIS_PORTS[name]}"
+        return f"drive {machine.motors[index]}: {AXIS_PORTS[name]}"
     if name in SWITCH_PORTS:
-        fitted = machine.ends[index].switches
-        served = [port for port in SWITCH_PORTS if port in fitted and (port == name or chosen.shared)]
-        return "".join(f"{AXIS_LETTERS[index]}: {SWITCH_PORTS[port]}" for port in served)
+        served = [
+            port
+            for port in SWITCH_PORTS
+            if machine.mask(port) >> index & 1 and (port == name or chosen.shared)
+        ]
+        axis = next(axis for axis in range(len(machine.ends)) if index in machine.motors_of(axis))
+        return "".join(f"{AXIS_LETTERS[axis]}: {SWITCH_PORTS[port]}" for port in served)
     if name == "probe":
         return "probe" if machine.switches.probe else ""
     if name == "outputs":
@@ -199,31 +216,30 @@ def _summary(machine: MachineFile, chosen: Board) -> Iterator[str]:
     with_parts = ", ".join(machine.parts) or "no parts"
     spi = next(mhz for mhz in SPI_MHZ if 4e6 * mhz <= machine.clock_hz)
     clock = f"{machine.clock_hz / 1e6:g} MHz; SPI {spi} MHz"
-    yield f"  core   {len(axes)} of {chosen.axes} axes, {with_parts}, {clock}"
+    yield f"  core   {len(machine.motors)} of {chosen.axes} axes, {with_parts}, {clock}"
     longest = {"STEP": max(pins.step_high, pins.step_low), "DIR": max(pins.dir_setup, pins.dir_hold)}
     times = (f"{name} {clocks / machine.clock_hz * 1e6:.3g} us" for name, clocks in longest.items())
     yield f"  pins   {', '.join(times)}; EN active {'low' if machine.enable_inverted else 'high'}"
     if not machine.enable_inverted:
         yield "         EN is high from power-up on: the drives hold before the firmware starts"
     most = machine.clock_hz / (2 * longest["STEP"])
-    for letter, axis, end in zip(AXIS_LETTERS, axes, machine.ends, strict=False):
+    for axis_number, (axis, end) in enumerate(zip(axes, machine.ends, strict=True)):
+        letter = AXIS_LETTERS[axis_number]
         steps = float(axis.speed * axis.steps_per_mm)
         fitted = ", ".join(end.switches) or "no switches"
-        yield f"  {letter}      {steps:,.0f} steps/s of at most {most:,.0f}; {fitted}"
-
-
-def _mask(machine: MachineFile, name: str) -> int:
-    return sum((name in end.switches) << axis for axis, end in enumerate(machine.ends))
+        own = ", ".join(machine.motors[motor] for motor in machine.motors_of(axis_number))
+        more = f"; motors {own}" if machine.settings.motors.rows else ""
+        yield f"  {letter}      {steps:,.0f} steps/s of at most {most:,.0f}; {fitted}{more}"
 
 
 def core_of(machine: MachineFile) -> tuple[int, float, tuple[str, ...]]:
     """Axes, MHz and parts of its core, as the board makes it."""
-    return len(machine.ends), machine.clock_hz / 1e6, machine.parts
+    return len(machine.motors), machine.clock_hz / 1e6, machine.parts
 
 
 def at_home(machine: MachineFile, chosen: Board) -> dict[str, int]:
     """Parameters of the board for limits that share a pin."""
-    return chosen.limits_at_home(_mask(machine, "limit_low"), _mask(machine, "limit_high"))
+    return chosen.limits_at_home(machine.mask("limit_low"), machine.mask("limit_high"))
 
 
 def definitions(machine: MachineFile) -> dict[str, int]:
@@ -231,12 +247,31 @@ def definitions(machine: MachineFile) -> dict[str, int]:
     homed = sum((end.home is not None) << axis for axis, end in enumerate(machine.ends))
     return {
         "AXES": len(machine.ends),
-        "HOMES": _mask(machine, "home"),
-        "LIMITS_LOW": _mask(machine, "limit_low"),
-        "LIMITS_HIGH": _mask(machine, "limit_high"),
+        "HOMES": machine.mask("home"),
+        "LIMITS_LOW": machine.mask("limit_low"),
+        "LIMITS_HIGH": machine.mask("limit_high"),
         "HOMED": homed,
         "PROBE": int(machine.switches.probe),
         "OUTPUTS": int("outputs" in machine.parts),
+        **_motors(machine.settings.motors),
+    }
+
+
+def _motors(motors: Motors) -> dict[str, int]:
+    if not motors.rows:
+        return {}
+    signs = {"MOTORS_PLUS": 1, "MOTORS_MINUS": -1}
+    return {
+        "MOTORS": len(motors.rows),
+        **{
+            name: sum(
+                (part == sign) << (8 * motor + axis)
+                for motor, row in enumerate(motors.rows)
+                for axis, part in enumerate(row)
+            )
+            for name, sign in signs.items()
+        },
+        **{f"MOTORS_{key.upper()}": int(getattr(motors.mixed, key)) for key in MOTOR_KEYS},
     }
 
 

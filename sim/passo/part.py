@@ -46,7 +46,7 @@ class Played:
 
     part: Part
     machine: MachineFile
-    clocks: list[np.ndarray]  # of the steps of each axis, from the start of the first motion
+    clocks: list[np.ndarray]  # of the steps of each motor, from the start of the first motion
     positions: list[np.ndarray]  # in steps, after each of them
     motions: list[tuple[int, int]]  # begin and end of each motion, in clocks
     end: list[int]  # positions at the end, in steps
@@ -66,12 +66,15 @@ class Played:
             found.append(f"the core stopped: {self.cause}")
         if self.drained:
             found.append(f"{self.drained} substeps were missing at the end of a ramp")
-        for axis, settings in enumerate(self.machine.settings.axes):
-            made = int(self.positions[axis][-1]) if len(self.positions[axis]) else 0
-            exact = self.part.end[axis] / NANOMETERS * float(settings.steps_per_mm)
-            if abs(made - exact) > 0.5 + 1e-6 or self.end[axis] != made:
+        settings = self.machine.settings
+        axes = len(settings.axes)
+        ends = settings.motors.map(axes) @ np.array(self.part.end[:axes]) / NANOMETERS * settings.scales
+        for motor, exact in enumerate(ends.tolist()):
+            made = int(self.positions[motor][-1]) if len(self.positions[motor]) else 0
+            if abs(made - exact) > 0.5 + 1e-6 or self.end[motor] != made:
+                name = self.machine.motors[motor]
                 found.append(
-                    f"axis {axis} made {made} steps and counted {self.end[axis]}, wanted are {exact:g}"
+                    f"motor {name} made {made} steps and counted {self.end[motor]}, wanted are {exact:g}"
                 )
         return found
 
@@ -119,9 +122,9 @@ def play_part(
 ) -> Played:
     """Play all lines; `progress` is called with the chords that the planner has taken."""
     driver = Driver(engine, machine.clock_hz, engine.parameters)
-    axes = len(machine.settings.axes)
-    for axis in range(axes):
-        driver.configure_axis(axis, machine.pins)
+    motors = len(machine.motors)
+    for motor in range(motors):
+        driver.configure_axis(motor, machine.pins)
     slew = machine.clock_hz // SLEWS_PER_SECOND
     driver.call("configure_motion", slew, slew, 1 << 16)
     program = Program(driver, machine.settings, machine.gcode, look_ahead)
@@ -142,9 +145,9 @@ def play_part(
         if engine.clock - quiet > PATIENCE * machine.clock_hz:
             raise BadInputError(f"{part.path}: timeout: no motion for an hour of simulated time")
     loop.run(8 * sum(vars(machine.pins).values()))
-    snapshot, end = driver.snapshot(), driver.positions()[:axes]
+    snapshot, end = driver.snapshot(), driver.positions()[:motors]
     cause, matched = driver.cause.name, getattr(engine, "matched_edges", None)
-    steps = loop.steps(axes)
+    steps = loop.steps(motors)
     motions = list(zip(steps.begins, steps.ends, strict=True))
     drained = int(snapshot.drained)
     return Played(part, machine, steps.clocks, steps.positions, motions, end, drained, cause, matched)

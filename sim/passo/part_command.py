@@ -2,6 +2,7 @@
 """`passo run PART.nc --machine MACHINE.toml`: from G-code to a folder of results."""
 
 import sys
+from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,7 @@ from passo.axis_judge import Share, faults
 from passo.console import progress
 from passo.expand.tools import read_tools
 from passo.failure import BadInputError
-from passo.gcode import AXIS_LETTERS, NANOMETERS
+from passo.gcode import NANOMETERS
 from passo.machine_file import MachineFile, read_machine
 from passo.output import empty_folder, write_json
 from passo.part import Part, Played, play_part, read_part
@@ -35,20 +36,9 @@ def run_part(
     machine = read_machine(machine_path)
     part = read_part(path, machine, read_tools(tools))
     out = out or paths.results / "run" / path.stem
-    empty_folder(out, (SUMMARY, PICTURE))
-    parameters = parameters_for(len(machine.settings.axes))
-    with (
-        open_engine(engine, parameters, machine.clock_hz) as core,
-        progress(path.name, part.chords) as report,
-    ):
-        played = play_part(part, machine, core, report)
-    judged = shares_of(played)
-    found = played.problems() + faults(judged)
-    write_json(_summary(part, machine, played, engine, judged, found), out / SUMMARY)
-    if plot:
-        from passo.part_plot import plot_part
-
-        plot_part(played, out / PICTURE)
+    with progress(path.name, part.chords) as report:
+        played, judged, summary = play_to(out, part, machine, engine, plot, report)
+    found = summary["problems"]
     for problem in found:
         print(f"{path}: {problem}", file=sys.stderr)
     if part.unread:
@@ -57,13 +47,36 @@ def run_part(
         print(f"{path}: nothing moved", file=sys.stderr)
     elif not found:
         print(f"{path.name}: {len(part.lines)} lines, {part.chords} chords in {played.seconds:.6g} s")
-        print(f"greatest share of a limit: {', '.join(_limit(share) for share in greatest(judged).values())}")
+        limits = ", ".join(_limit(machine, share) for share in greatest(judged).values())
+        print(f"greatest share of a limit: {limits}")
     print(f"results: {', '.join(str(out / name) for name in (SUMMARY, PICTURE) if (out / name).exists())}")
     return not found
 
 
-def _limit(share: Share) -> str:
-    return f"{share.name} {share.share:.3f}" + (f" ({AXIS_LETTERS[share.axis]})" if share.share else "")
+def play_to(
+    out: Path,
+    part: Part,
+    machine: MachineFile,
+    engine: str,
+    plot: bool = True,
+    report: Callable[[int], None] = lambda chords: None,
+) -> tuple[Played, list[Share], dict[str, Any]]:
+    """Play a part and write the results to a folder; what left the pins, its limits, and its summary."""
+    empty_folder(out, (SUMMARY, PICTURE))
+    with open_engine(engine, parameters_for(len(machine.motors)), machine.clock_hz) as core:
+        played = play_part(part, machine, core, report)
+    judged = shares_of(played)
+    summary = _summary(part, machine, played, engine, judged, played.problems() + faults(judged))
+    write_json(summary, out / SUMMARY)
+    if plot:
+        from passo.part_plot import plot_part
+
+        plot_part(played, out / PICTURE)
+    return played, judged, summary
+
+
+def _limit(machine: MachineFile, share: Share) -> str:
+    return f"{share.name} {share.share:.3f}" + (f" ({machine.limited[share.axis]})" if share.share else "")
 
 
 def _summary(
@@ -86,6 +99,7 @@ def _summary(
             "millimetres": [nanometres / NANOMETERS for nanometres in part.end[: len(axes)]],
             "steps": played.end,
         },
+        "motors": machine.motors,
         "pulses": [len(clocks) for clocks in played.clocks],
         "limits": {name: asdict(share) for name, share in greatest(judged).items()},
     }

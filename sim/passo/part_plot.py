@@ -7,7 +7,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import LineCollection
 
-from passo.gcode import AXIS_LETTERS
 from passo.part import Played
 from passo.plot import COLORS, STYLE, save
 
@@ -25,15 +24,16 @@ class Motion:
         self.times = np.linspace(0, seconds, max(16, min(SAMPLES, round(seconds / RASTER))))
         step = self.times[1]
         width = max(1, round(WINDOW / step / 2))
-        self.positions, self.speeds = [], []
-        for clocks, counts, axis in zip(
-            played.clocks, played.positions, played.machine.settings.axes, strict=True
-        ):
+        settings, motors = played.machine.settings, []
+        for clocks, counts, scale in zip(played.clocks, played.positions, settings.scales, strict=True):
             at = np.concatenate([[-1e-9], clocks / clock_hz])
-            position = np.interp(self.times, at, np.concatenate([[0], counts])) / float(axis.steps_per_mm)
-            self.positions.append(position)
-            self.speeds.append(_change(position, width) / step)
+            motors.append(np.interp(self.times, at, np.concatenate([[0], counts])) / scale)
+        self.positions = settings.motors.axes_of(np.stack(motors, axis=1)).T
+        self.speeds = [_change(position, width) / step for position in self.positions]
         self.speed = np.sqrt(np.sum(np.square(self.speeds), axis=0))
+        self.shares = [  # of the limits of axes and motors
+            np.abs(direction @ self.speeds) / float(limits.speed) for direction, limits in settings.limits()
+        ]
 
 
 def _change(values: np.ndarray, width: int) -> np.ndarray:
@@ -45,7 +45,6 @@ def _change(values: np.ndarray, width: int) -> np.ndarray:
 def plot_part(played: Played, path: Path) -> None:
     """Write a page of plots."""
     motion = Motion(played)
-    axes = played.machine.settings.axes
     with plt.rc_context(STYLE):
         figure, panels = plt.subplot_mosaic(
             [["path"], ["speed"], ["axes"]], figsize=(11, 13), height_ratios=[2.2, 1, 1]
@@ -58,16 +57,16 @@ def plot_part(played: Played, path: Path) -> None:
         _draw_path(figure, panels["path"], motion)
         panels["speed"].plot(motion.times, motion.speed, color=COLORS[0], linewidth=0.8)
         panels["speed"].set(title="Speed along the path", xlabel="s", ylabel="mm/s", ylim=(0, None))
-        for number, axis in enumerate(axes):
-            share = np.abs(motion.speeds[number]) / float(axis.speed)
+        names = played.machine.limited
+        for number, share in enumerate(motion.shares):
             panels["axes"].plot(
                 motion.times,
                 share,
-                label=AXIS_LETTERS[number],
+                label=names[number],
                 color=COLORS[number % len(COLORS)],
                 linewidth=0.8,
             )
-        panels["axes"].set(title="Speeds of the axes, relative to their limits", xlabel="s")
+        panels["axes"].set(title=f"Speeds of {', '.join(names)}, relative to their limits", xlabel="s")
         panels["axes"].axhline(1, color="#8c959f", linestyle="--", linewidth=0.8)
         panels["axes"].legend(loc="upper right", ncols=6)
         save(figure, path, 110)

@@ -44,6 +44,28 @@ enum passo_error passo_home(struct passo *passo, const struct passo_home *homes,
 	    passo, (struct passo_task){.kind = PASSO_TASK_HOME, .left = count, .home = homes}, NULL, NULL);
 }
 
+/* Motors that move with the axis being homed. An image without room has none: PASSO_CARTESIAN. */
+static int32_t sign_of(const struct passo_home *home, uint32_t motor)
+{
+#ifndef PASSO_CARTESIAN
+	if ((home->forward | home->backward) != 0u)
+		return (int32_t)(home->forward >> motor & 1u) - (int32_t)(home->backward >> motor & 1u);
+#endif
+	return motor == home->axis;
+}
+
+static void set_homed(struct passo *passo, const struct passo_home *home, bool homed)
+{
+#ifdef PASSO_CARTESIAN
+	passo->axis[home->axis].homed = homed;
+#else
+	for (uint32_t motor = 0; motor < passo->machine.axes; motor++) {
+		if (sign_of(home, motor) != 0)
+			passo->axis[motor].homed = homed;
+	}
+#endif
+}
+
 /* Moves the axis being homed, for a phase. With an edge: until it occurs. */
 enum edge { NO_EDGE, RISING, FALLING };
 static enum passo_error go(
@@ -56,7 +78,12 @@ static enum passo_error go(
 	    .falling = edge == FALLING};
 	struct passo_move_by_speed move = {.speed = speed, .acceleration = home->acceleration};
 
+#ifdef PASSO_CARTESIAN
 	move.steps[home->axis] = steps;
+#else
+	for (uint32_t motor = 0; motor < passo->machine.axes; motor++)
+		move.steps[motor] = sign_of(home, motor) * steps;
+#endif
 	passo->task.phase = phase;
 	return passo_driver_seek(passo, edge != NO_EDGE ? &trigger : NULL, &move);
 }
@@ -66,7 +93,7 @@ enum passo_error passo_driver_home_first(struct passo *passo)
 	const struct passo_home *home = passo->task.home;
 	enum passo_error error = go(passo, PASSO_HOME_APPROACH, RISING, home->distance, home->speed);
 
-	passo->axis[home->axis].homed = false;
+	set_homed(passo, home, false);
 	if (error != PASSO_ERROR_SWITCH_LEVEL)
 		return error;
 	return go(passo, PASSO_HOME_RELEASE, FALLING, -home->distance, home->speed);
@@ -102,17 +129,43 @@ static enum passo_error end_axis(struct passo *passo)
 	return passo_driver_home_first(passo);
 }
 
+/* The axis is there: its motors are shifted, so that another axis that they move stays where it is, within
+ * half a step. */
+static enum passo_error set_position(struct passo *passo, int32_t position)
+{
+	const struct passo_home *home = passo->task.home;
+#ifdef PASSO_CARTESIAN
+	return passo_set_position(passo, home->axis, position);
+#else
+	int32_t now[PASSO_AXES_MAX];
+	enum passo_error error = passo_positions(passo, now);
+	int64_t sum = 0, motors = 0;
+
+	for (uint32_t motor = 0; motor < passo->machine.axes; motor++) {
+		sum += (int64_t)sign_of(home, motor) * now[motor];
+		motors += sign_of(home, motor) != 0;
+	}
+	const int64_t shift = (position * motors - sum) / motors;
+	for (uint8_t motor = 0; error == PASSO_OK && motor < passo->machine.axes; motor++) {
+		if (sign_of(home, motor) != 0)
+			error = passo_set_position(
+			    passo, motor, (int32_t)(now[motor] + sign_of(home, motor) * shift));
+	}
+	return error;
+#endif
+}
+
 /* The edge was `past` steps ago: it is at home->position. */
 static enum passo_error set_home(struct passo *passo, int32_t past)
 {
 	const struct passo_home *home = passo->task.home;
 	const int32_t away = (int32_t)home->pull_off;
-	enum passo_error error =
-	    passo_set_position(passo, home->axis, (int32_t)((uint32_t)home->position + (uint32_t)past));
+	const enum passo_error error =
+	    set_position(passo, (int32_t)((uint32_t)home->position + (uint32_t)past));
 
 	if (error != PASSO_OK)
 		return error;
-	passo->axis[home->axis].homed = true;
+	set_homed(passo, home, true);
 	if (away == 0)
 		return end_axis(passo);
 	return go(
@@ -133,7 +186,8 @@ enum passo_error passo_driver_home_next(struct passo *passo, const struct passo_
 	enum passo_error error = passo_positions(passo, now);
 	if (error != PASSO_OK)
 		return error;
-	const int32_t past = (int32_t)((uint32_t)now[axis] - (uint32_t)report->positions[axis]);
+	const int32_t moved = (int32_t)((uint32_t)now[axis] - (uint32_t)report->positions[axis]);
+	const int32_t past = sign_of(passo->task.home, axis) < 0 ? -moved : moved;
 	return passo->task.phase == PASSO_HOME_SLOW ? set_home(passo, past) : back_off(passo, past);
 }
 

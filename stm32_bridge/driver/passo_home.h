@@ -22,7 +22,11 @@ extern "C" {
  * becomes `position`. An already active switch is left first. The stops on the switch take the time of
  * passo_configure_motion(). */
 struct passo_home {
-	uint8_t axis;
+	uint8_t axis; /* of the switch */
+#ifndef PASSO_CARTESIAN
+	uint8_t forward, backward; /* bits of the motors that move, the same way or the other way; 0: the axis
+	                              alone. Its position is the mean of theirs, with these signs */
+#endif
 	enum passo_trigger_source source; /* HOME, LIMIT_LOW or LIMIT_HIGH */
 	int32_t distance;                 /* longest travel to the switch, steps; the sign is the direction */
 	uint32_t back_off;          /* steps from the edge before the slow approach: above its hysteresis */

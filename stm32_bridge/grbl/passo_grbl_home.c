@@ -25,6 +25,20 @@ static uint64_t speed_of(const struct passo_grbl *grbl, unsigned axis, enum pass
 	    SECONDS_PER_MINUTE * MILLION);
 }
 
+#ifndef PASSO_CARTESIAN
+/* Bits of the motors that move an axis, as it goes or the other way. */
+static uint8_t motors_along(const struct passo_grbl *grbl, unsigned axis, bool backward)
+{
+	const struct passo_motors *motors = &grbl->path.motors;
+	const uint8_t *rows = backward ? motors->minus : motors->plus;
+	uint8_t bits = 0;
+
+	for (unsigned motor = 0; motor < motors->count; motor++)
+		bits |= (uint8_t)((rows[motor] >> axis & 1u) << motor);
+	return bits;
+}
+#endif
+
 static struct passo_home home_of(const struct passo_grbl *grbl, uint8_t axis)
 {
 	const struct passo_grbl_settings *settings = &grbl->stored.settings;
@@ -35,6 +49,10 @@ static struct passo_home home_of(const struct passo_grbl *grbl, uint8_t axis)
 
 	return (struct passo_home){
 	    .axis = axis,
+#ifndef PASSO_CARTESIAN
+	    .forward = motors_along(grbl, axis, false),
+	    .backward = motors_along(grbl, axis, true),
+#endif
 	    .source = grbl->setup->homes >> axis & 1u ? PASSO_TRIGGER_SOURCE_HOME
 	            : low                             ? PASSO_TRIGGER_SOURCE_LIMIT_LOW
 	                                              : PASSO_TRIGGER_SOURCE_LIMIT_HIGH,
@@ -44,7 +62,8 @@ static struct passo_home home_of(const struct passo_grbl *grbl, uint8_t axis)
 	    .speed = speed_of(grbl, axis, PASSO_GRBL_HOME_SEEK),
 	    .slow_speed = speed_of(grbl, axis, PASSO_GRBL_HOME_FEED),
 	    .acceleration = passo_mul_div(
-		grbl->path.axis[axis].acceleration, grbl->path.axis[axis].steps_per_mm, UINT64_C(1) << 32),
+		passo_path_mixed_acceleration(grbl->player->feed->path, grbl->path.axis[axis].acceleration),
+		grbl->path.axis[axis].steps_per_mm, UINT64_C(1) << 32),
 	    .position = low ? -steps_of(grbl, axis, travel) : 0,
 	};
 }

@@ -65,8 +65,8 @@ enum passo_error passo_grbl_drive(struct passo_grbl *grbl, bool on)
 	struct passo *passo = grbl->player->feed->passo;
 	enum passo_error error = PASSO_OK;
 
-	for (uint8_t axis = 0; error == PASSO_OK && axis < grbl->path.machine.axes; axis++)
-		error = passo_enable(passo, axis, on);
+	for (uint8_t motor = 0; error == PASSO_OK && motor < passo_grbl_motors(grbl); motor++)
+		error = passo_enable(passo, motor, on);
 	grbl->driven = on || error != PASSO_OK;
 	grbl->moved_at = passo_driver_now(passo);
 	return error;
@@ -124,8 +124,10 @@ static enum passo_gcode_error check_pins(const struct passo_grbl *grbl, struct t
 		return PASSO_GCODE_PULSE_TOO_SHORT;
 	if (timing.pulse > PASSO_PIN_CLOCKS_MAX || timing.turn > PASSO_PIN_CLOCKS_MAX)
 		return PASSO_GCODE_STATEMENT;
-	for (unsigned axis = 0; axis < grbl->path.machine.axes; axis++) {
-		if (!is_in_time(grbl, &grbl->path.axis[axis], timing))
+	for (unsigned motor = 0; motor < passo_grbl_motors(grbl); motor++) {
+		struct passo_path_axis mixed;
+
+		if (!is_in_time(grbl, passo_path_motor_limits(&grbl->path, motor, &mixed), timing))
 			return PASSO_GCODE_TOO_FAST;
 	}
 	return PASSO_GCODE_OK;
@@ -143,10 +145,10 @@ static enum passo_error apply_pins(struct passo_grbl *grbl, struct timing timing
 	    .enable_inverted = passo_grbl_is_on(settings, PASSO_GRBL_ENABLES_INVERTED)};
 	enum passo_error error = PASSO_OK;
 
-	for (uint8_t axis = 0; error == PASSO_OK && axis < grbl->path.machine.axes; axis++) {
-		config.step_inverted = passo_grbl_has_axis(settings, PASSO_GRBL_STEPS_INVERTED, axis);
-		config.direction_inverted = passo_grbl_has_axis(settings, PASSO_GRBL_DIRS_INVERTED, axis);
-		error = passo_configure_axis(passo, axis, &config);
+	for (uint8_t motor = 0; error == PASSO_OK && motor < passo_grbl_motors(grbl); motor++) {
+		config.step_inverted = passo_grbl_has_axis(settings, PASSO_GRBL_STEPS_INVERTED, motor);
+		config.direction_inverted = passo_grbl_has_axis(settings, PASSO_GRBL_DIRS_INVERTED, motor);
+		error = passo_configure_axis(passo, motor, &config);
 	}
 	return error == PASSO_OK ? passo_grbl_drive(grbl, true) : error;
 }
@@ -163,16 +165,17 @@ static enum passo_error apply_inputs(struct passo_grbl *grbl)
 	    (uint64_t)settings->value[PASSO_GRBL_DEBOUNCE], grbl->path.machine.clock_hz, MILLION * 1000u);
 	enum passo_error error = passo_configure_filter(passo, filter);
 
-	for (uint8_t axis = 0; error == PASSO_OK && axis < grbl->path.machine.axes; axis++) {
+	for (uint8_t motor = 0; error == PASSO_OK && motor < passo_grbl_motors(grbl); motor++) {
+		const unsigned axis = passo_grbl_axis_of(grbl, motor);
 		const bool by_limit = (setup->homed >> axis & 1u) > (setup->homes >> axis & 1u);
 		const bool used = hard || (by_limit && passo_grbl_is_on(settings, PASSO_GRBL_HOMING));
-		const bool low = setup->limits_low >> axis & 1u, high = setup->limits_high >> axis & 1u;
+		const bool low = setup->limits_low >> motor & 1u, high = setup->limits_high >> motor & 1u;
 
 		/* Inputs without a switch are grounded. */
-		error = passo_configure_inputs(passo, axis,
+		error = passo_configure_inputs(passo, motor,
 		    &(struct passo_input_config){.limit_low = used && low,
 			.limit_high = used && high,
-			.home = setup->homes >> axis & 1u,
+			.home = setup->homes >> motor & 1u,
 			.limit_low_inverted = inverted && low,
 			.limit_high_inverted = inverted && high,
 			.home_inverted = inverted,

@@ -39,6 +39,37 @@ void passo_grbl_drop_input(struct passo_grbl *grbl);
 /* Jogs received before a jog cancel are dropped. */
 void passo_grbl_drop_jogs(struct passo_grbl *grbl);
 
+/* Its motors, and the bits of those that are named after an axis. */
+static inline unsigned passo_grbl_motors(const struct passo_grbl *grbl)
+{
+#ifndef PASSO_CARTESIAN
+	if (grbl->path.motors.count > 0)
+		return grbl->path.motors.count;
+#endif
+	return grbl->path.machine.axes;
+}
+
+/* The axis that a motor is named after. */
+static inline unsigned passo_grbl_axis_of(const struct passo_grbl *grbl, unsigned motor)
+{
+#ifndef PASSO_CARTESIAN
+	if (motor >= grbl->path.machine.axes)
+		return passo_motor_axis(&grbl->path.motors, motor);
+#endif
+	(void)grbl;
+	return motor;
+}
+
+static inline unsigned passo_grbl_motors_of(const struct passo_grbl *grbl, unsigned axis)
+{
+#ifdef PASSO_CARTESIAN
+	(void)grbl;
+	return 1u << axis;
+#else
+	return passo_motors_of(&grbl->path.motors, grbl->path.machine.axes, axis);
+#endif
+}
+
 /* Reports an alarm, answers the current line, and stops. */
 void passo_grbl_fail(struct passo_grbl *grbl, enum passo_grbl_alarm alarm, enum passo_gcode_error error);
 void passo_grbl_begin_stop(struct passo_grbl *grbl);

@@ -143,7 +143,7 @@ static void report_inputs(struct passo_grbl *grbl)
 	if (probe)
 		passo_grbl_say(grbl, "P");
 	for (unsigned axis = 0; axis < grbl->player->gcode->settings.axes; axis++) {
-		if (switches >> axis & 1u)
+		if (switches & passo_grbl_motors_of(grbl, axis))
 			passo_grbl_say(grbl, (const char[]){passo_gcode_axis_letter(axis), '\0'});
 	}
 	if (readings.estop)
@@ -182,10 +182,9 @@ static void report_position(struct passo_grbl *grbl, bool machine)
 	passo_gcode_position position = {0};
 
 	passo_positions(player->feed->passo, steps);
-	for (unsigned axis = 0; axis < player->gcode->settings.axes; axis++) {
-		position[axis] = passo_player_nanometres(player, axis, steps[axis]);
+	passo_player_place(player, steps, position);
+	for (unsigned axis = 0; axis < player->gcode->settings.axes; axis++)
 		position[axis] -= machine ? 0 : passo_gcode_offset(player->gcode, axis);
-	}
 	passo_grbl_say_position(grbl, machine ? "|MPos" : "|WPos", position);
 }
 

@@ -42,14 +42,18 @@ uint64_t passo_player_magnitude(int64_t value)
 	return value < 0 ? 0 - (uint64_t)value : (uint64_t)value;
 }
 
-int64_t passo_player_nanometres(const struct passo_player *player, unsigned axis, int32_t steps)
+void passo_player_place(const struct passo_player *player, const int32_t *motors, passo_gcode_position place)
 {
-	const uint64_t scale = player->machine->axis[axis].steps_per_mm; /* UQ32.32 */
-	const uint64_t twice =
-	    passo_mul_div(passo_player_magnitude(steps) * PASSO_GCODE_MILLION, UINT64_C(1) << 33, scale);
-	const int64_t size = (int64_t)((twice + 1) / 2);
+	for (unsigned axis = 0; axis < player->gcode->settings.axes; axis++) {
+		uint32_t parts = 1;
+		const int64_t sum = passo_path_axis_place(player->feed->path, axis, motors, &parts);
+		const uint64_t scale = player->machine->axis[axis].steps_per_mm * parts; /* UQ32.32 */
+		const uint64_t twice = passo_mul_div(
+		    passo_player_magnitude(sum) * PASSO_GCODE_MILLION, UINT64_C(1) << 33, scale);
+		const int64_t size = (int64_t)((twice + 1) / 2);
 
-	return steps < 0 ? -size : size;
+		place[axis] = sum < 0 ? -size : size;
+	}
 }
 
 bool passo_player_allows(const struct passo_player *player, const int64_t *target)
@@ -67,9 +71,11 @@ void passo_player_drop(struct passo_player *player)
 {
 	const struct passo_path_planner *path = player->feed->path;
 	passo_gcode_position position;
+	int32_t steps[PASSO_AXES_MAX];
 
-	for (unsigned axis = 0; axis < player->gcode->settings.axes; axis++)
-		position[axis] = passo_player_nanometres(player, axis, (int32_t)path->at.steps[axis]);
+	for (unsigned motor = 0; motor < passo_path_motors(path); motor++)
+		steps[motor] = (int32_t)path->at.steps[motor];
+	passo_player_place(player, steps, position);
 	passo_gcode_set_position(player->gcode, position);
 	player->waits = false;
 }
@@ -112,8 +118,7 @@ enum passo_error passo_player_restart(struct passo_player *player)
 
 	if (error != PASSO_OK)
 		return error;
-	for (unsigned axis = 0; axis < player->gcode->settings.axes; axis++)
-		position[axis] = passo_player_nanometres(player, axis, positions[axis]);
+	passo_player_place(player, positions, position);
 	passo_path_restart(player->feed->path, positions);
 	passo_path_feed_open(player->feed, player->feed->passo, player->feed->path);
 	passo_gcode_set_position(player->gcode, position);

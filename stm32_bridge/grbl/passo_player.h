@@ -111,7 +111,7 @@ uint64_t passo_player_speed(const struct passo_player *player);
  * core. One frame. Errors: those of passo_positions(). */
 enum passo_error passo_player_restart(struct passo_player *player);
 
-/* Converts steps to nanometers, to nearest. */
-int64_t passo_player_nanometres(const struct passo_player *player, unsigned axis, int32_t steps);
+/* Places of the axes, in nanometers to nearest, of positions of the motors in steps. */
+void passo_player_place(const struct passo_player *player, const int32_t *motors, passo_gcode_position place);
 
 #endif

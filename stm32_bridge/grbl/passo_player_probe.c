@@ -4,27 +4,53 @@
 #include "passo_math.h"
 #include "passo_player_private.h"
 
-/* Steps of the probe, and its speed and acceleration: those of the axis with the most steps. */
+/* From steps of axes to those of motors, and what is the most of these; and the acceleration along the path
+ * that they allow. */
+static void mix(
+    const struct passo_path_planner *path, struct passo_probe *probe, uint64_t *most, uint64_t *acceleration)
+{
+#ifdef PASSO_CARTESIAN
+	(void)path, (void)probe, (void)most, (void)acceleration;
+#else
+	int64_t steps[PASSO_AXES_MAX];
+
+	for (unsigned axis = 0; axis < PASSO_AXES_MAX; axis++)
+		steps[axis] = probe->steps[axis];
+	*most = 0;
+	*acceleration = passo_path_mixed_acceleration(path, *acceleration);
+	for (unsigned motor = 0; motor < passo_path_motors(path); motor++) {
+		const int64_t own = passo_path_motor_place(path, motor, steps);
+		const uint64_t size = passo_player_magnitude(own);
+
+		probe->steps[motor] = (int32_t)own;
+		*most = size > *most ? size : *most;
+	}
+#endif
+}
+
+/* Steps of the probe, and its speed and acceleration: those of the motor with the most steps. */
 static struct passo_probe plan_probe(struct passo_player *player, const int32_t *positions)
 {
 	const struct passo_gcode_action *action = &player->action;
 	struct passo_probe probe = {.away = action->probe >= 384, .optional = action->probe % 2 == 1};
 	struct passo_u128 square = {0, 0};
 	uint64_t most = 0, way = 0, slowest = UINT64_MAX;
+	passo_gcode_position from;
 
+	passo_player_place(player, positions, from);
 	for (unsigned axis = 0; axis < player->gcode->settings.axes; axis++) {
 		const struct passo_path_axis *limits = &player->machine->axis[axis];
-		const int64_t from = passo_player_nanometres(player, axis, positions[axis]);
-		const uint64_t length = passo_player_magnitude(action->target[axis] - from);
-		const uint64_t steps = passo_mul_div(
+		const uint64_t length = passo_player_magnitude(action->target[axis] - from[axis]);
+		const uint64_t size = passo_mul_div(
 		    passo_mul_div(length, limits->steps_per_mm, UINT64_C(1) << 32), 1, PASSO_GCODE_MILLION);
 
-		probe.steps[axis] = action->target[axis] < from ? -(int32_t)steps : (int32_t)steps;
+		probe.steps[axis] = action->target[axis] < from[axis] ? -(int32_t)size : (int32_t)size;
 		square = passo_u128_add(square, passo_multiply(length, length));
-		most = steps > most ? steps : most;
-		if (steps > 0 && limits->acceleration < slowest)
+		most = size > most ? size : most;
+		if (size > 0 && limits->acceleration < slowest)
 			slowest = limits->acceleration;
 	}
+	mix(player->feed->path, &probe, &most, &slowest);
 	way = passo_isqrt128(square);
 	player->probe_scale = 0;
 	if (way > 0) {
@@ -74,8 +100,7 @@ enum passo_error passo_player_end_probe(struct passo_player *player, enum passo_
 	if (error != PASSO_OK)
 		return error;
 	player->touched = report.fired;
-	for (unsigned axis = 0; axis < player->gcode->settings.axes; axis++)
-		player->touch[axis] = passo_player_nanometres(player, axis, report.positions[axis]);
+	passo_player_place(player, report.positions, player->touch);
 	*event = PASSO_PLAYER_PROBED;
 	return passo_player_restart(player);
 }

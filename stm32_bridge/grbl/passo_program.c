@@ -8,10 +8,11 @@ enum passo_error passo_program_open(struct passo_program *program, struct passo 
 
 	if (error != PASSO_PLAN_OK)
 		return PASSO_ERROR_PLAN + (enum passo_error)error;
-	for (uint8_t axis = 0; axis < settings->path.machine.axes; axis++) {
-		const struct passo_path_axis *own = &settings->path.axis[axis];
+	for (uint8_t motor = 0; motor < passo_path_motors(&program->path); motor++) {
+		struct passo_path_axis mixed;
+		const struct passo_path_axis *own = passo_path_motor_limits(&settings->path, motor, &mixed);
 
-		if (own->speed > passo_highest_speed(passo, axis, own->steps_per_mm))
+		if (own->speed > passo_highest_speed(passo, motor, own->steps_per_mm))
 			return PASSO_ERROR_PINS_TOO_SLOW;
 	}
 	for (unsigned axis = 0; axis < PASSO_AXES_MAX; axis++)

@@ -36,7 +36,7 @@ struct passo_program {
 };
 
 /* `items` and `capacity`: the look-ahead, see passo_path_open(). The settings are copied. Errors:
- * PINS_TOO_SLOW: the speed limit of an axis exceeds passo_highest_speed(); PASSO_ERROR_PLAN + those of
+ * PINS_TOO_SLOW: the speed limit of a motor exceeds passo_highest_speed(); PASSO_ERROR_PLAN + those of
  * passo_path_open(). */
 enum passo_error passo_program_open(struct passo_program *program, struct passo *passo,
     const struct passo_program_settings *settings, struct passo_path_item *items, uint32_t capacity);

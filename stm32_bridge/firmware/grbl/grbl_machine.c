@@ -6,7 +6,7 @@
 
 #define MILLION ((int64_t)PASSO_GCODE_MILLION)
 #define AXES_USED (AXES > 0 ? AXES : GRBL_AXES_MAX)
-#define AXES_NEEDED (AXES > 0 ? AXES : 1)
+#define AXES_NEEDED (MOTORS > 0 ? MOTORS : AXES > 0 ? AXES : 1)
 #define LINEAR_AXES 2u /* X and Y; Z and what follows are slow */
 
 static const uint16_t VALUES[PASSO_GRBL_SETTINGS] = {
@@ -45,6 +45,26 @@ static void grbl_defaults(struct passo_grbl_settings *settings)
 }
 
 _Static_assert(AXES <= GRBL_AXES_MAX, "the image has fewer axes");
+#ifdef PASSO_CARTESIAN
+_Static_assert(MOTORS == 0, "the image has a motor for each axis");
+#else
+_Static_assert(
+    MOTORS == 0 || (MOTORS >= AXES && MOTORS <= PASSO_PATH_AXES_MAX), "the image has fewer motors");
+
+static void set_motors(struct passo_path_settings *path)
+{
+	const uint64_t plus = MOTORS_PLUS, minus = MOTORS_MINUS;
+
+	path->motors.count = MOTORS;
+	for (unsigned motor = 0; motor < path->motors.count; motor++) {
+		path->motors.plus[motor] = (uint8_t)(plus >> 8u * motor);
+		path->motors.minus[motor] = (uint8_t)(minus >> 8u * motor);
+	}
+	path->mixed = (struct passo_path_axis){.speed = (uint64_t)MOTORS_SPEED << 32,
+	    .acceleration = (uint64_t)MOTORS_ACCELERATION << 32,
+	    .jerk = (uint64_t)MOTORS_JERK << 32};
+}
+#endif
 
 enum passo_error grbl_machine_check(struct passo *passo)
 {
@@ -73,4 +93,7 @@ void grbl_machine(
 	    .pages = pages};
 	if (setup->path.machine.axes > AXES_USED)
 		setup->path.machine.axes = AXES_USED;
+#ifndef PASSO_CARTESIAN
+	set_motors(&setup->path);
+#endif
 }

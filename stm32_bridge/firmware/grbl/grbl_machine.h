@@ -39,6 +39,28 @@
 #define OUTPUTS 0
 #endif
 
+/* Motors, if not one for each axis, and the axes that each moves the same way and the other way: a byte for
+ * each motor, the first one is the lowest (passo_motors.h). Limits of those that move two axes, in mm/s and
+ * mm/s^2 (0: the larger one of the axes). Not in an image with PASSO_CARTESIAN. */
+#ifndef MOTORS
+#define MOTORS 0
+#endif
+#ifndef MOTORS_PLUS
+#define MOTORS_PLUS 0
+#endif
+#ifndef MOTORS_MINUS
+#define MOTORS_MINUS 0
+#endif
+#ifndef MOTORS_SPEED
+#define MOTORS_SPEED 0
+#endif
+#ifndef MOTORS_ACCELERATION
+#define MOTORS_ACCELERATION 0
+#endif
+#ifndef MOTORS_JERK
+#define MOTORS_JERK 0
+#endif
+
 /* Axes that `$H` homes, by their home or limit switch. */
 #ifndef HOMED
 #define HOMED HOMES

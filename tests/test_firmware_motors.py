@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: MIT
+"""The grbl image for the STM32F103CB on machines whose motors are not their axes."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from passo.engine import model_engine
+from passo.grbl_setup import core_for, machine_at
+from passo.machine_file import read_machine
+from passo.make_command import definitions
+from passo.toolchain import paths
+from passo_stm32.grbl_board import LARGE_IMAGE, GrblBoard, grbl_elf
+from passo_stm32.machine import Machine
+
+HEAD = 'clock_hz = 36_000_000\nchip = "STM32F103CB"\n'
+AXIS = '[[axis]]\nname = "{}"\nsteps_per_mm = {}\nspeed = {}\nacceleration = {}\ntravel = 200\n{}\n'
+KINDS = {"corexy": ('kinematics = "corexy"\n', ""), "ganged": ("", "motors = 2")}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_lines_of_axes_move_motors(kind: str, tmp_path: Path) -> None:
+    """Of the firmware itself, with the definitions that `passo make` gives it; a core with fewer says so."""
+    head, more = KINDS[kind]
+    limits = (("X", 80, 200, 1000, ""), ("Y", 80, 200, 1000, more), ("Z", 400, 12, 100, ""))
+    path = tmp_path / "machine.toml"
+    path.write_text(HEAD + head + "".join(AXIS.format(*axis) for axis in limits))
+    machine = read_machine(path)
+    given = [f"{name}={value}" for name, value in definitions(machine).items()]
+    elf = grbl_elf(paths.build / "tests" / f"firmware_motors_{kind}", *given, image=LARGE_IMAGE)
+    with machine_at("model", machine) as engine:
+        board = GrblBoard(engine, elf)
+        for line in ("G0 X2 Y1", "G1 X1 Y3 Z0.1 F3000", "G4 P0.01"):
+            assert board.line(line, 5) == "ok"
+        rows = machine.settings.motors.map(3)
+        events = board.events()
+        for motor, place in enumerate((rows @ np.array([1, 3, 0.1]) * machine.settings.scales).tolist()):
+            level = events["step"].astype(np.int64) >> motor & 1
+            rising = np.flatnonzero(np.diff(level, prepend=0) == 1)
+            back = events["dir"][rising].astype(np.int64) >> motor & 1
+            assert int((1 - 2 * back).sum()) == place
+        assert not board.faults
+    with model_engine(replace(core_for(machine), axes=len(rows) - 1), machine.clock_hz) as engine:
+        small = Machine(elf, engine)
+        small.run(0.5)
+        assert "[MSG:PARAMETERS: " in small.output and "Grbl" not in small.output

@@ -1,0 +1,210 @@
+# SPDX-License-Identifier: MIT
+"""Machines whose motors are not their axes: file, `passo run`, the grbl console, `passo make`."""
+
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from passo.cli import main
+from passo.failure import BadInputError
+from passo.grbl_setup import machine_at
+from passo.machine_check import check_machine
+from passo.machine_file import MachineFile, read_machine
+from passo.make_command import definitions
+from passo.toolchain import paths
+
+from tests.helpers.grbl_console import GrblConsole
+
+HEAD = "clock_hz = 4_000_000\nprobe = true\n{head}\n[home]\nseek = 40\nspeed = 10\n"
+AXIS = (
+    '[[axis]]\nname = "{name}"\nsteps_per_mm = {scale}\nspeed = 100\nacceleration = 1000\n'
+    "travel = {travel}\n{more}\n"
+)
+HOMES = {"X": 'home = "low"\nswitches = ["home"]', "Y": 'home = "high"\nswitches = ["home"]'}
+TRAVELS = {"X": 30, "Y": 20, "Z": 15, "A": 90}
+PART = "G21 G90\nG0 X5 Y3\nG1 X12 Y3 F3000\nG2 X12 Y9 J3\nG1 X5 Y3 Z1\nM2\n"
+
+
+def machine_of(folder: Path, head: str = "", axes: str = "XYZ", scales: str = "", **more: str) -> MachineFile:
+    """A machine with keys at the top, and more of some axes."""
+    homes = {**HOMES, "Z": 'home = "high"\nswitches = ["home"]', **more}
+    given = dict(word.split("=") for word in scales.split())
+    path = folder / "machine.toml"
+    path.write_text(
+        HEAD.format(head=head)
+        + "".join(
+            AXIS.format(name=name, scale=given.get(name, 80), travel=TRAVELS[name], more=homes.get(name, ""))
+            for name in axes
+        )
+    )
+    return read_machine(path)
+
+
+COREXY, COREXZ = 'kinematics = "corexy"', 'kinematics = "corexz"'
+GANGED = {"Y": f"motors = 2\n{HOMES['Y']}"}
+LIMITS = {"Y": 'motors = 2\nhome = "high"\nswitches = ["limit_high"]'}
+
+
+def test_names_and_maps(tmp_path: Path) -> None:
+    """In the order of the core."""
+    assert machine_of(tmp_path).motors == ["X", "Y", "Z"] and machine_of(tmp_path).settings.motors.rows == ()
+    assert machine_of(tmp_path, COREXY).motors == ["X+Y", "X-Y", "Z"]
+    assert machine_of(tmp_path, COREXZ).motors == ["X+Z", "Y", "X-Z"]
+    machine = machine_of(tmp_path, X="motors = 2", Y="motors = 3")
+    assert machine.motors == ["X", "Y", "Z", "X2", "Y2", "Y3"]
+    assert machine.motors_of(1) == [1, 4, 5] and machine.limited == ["X", "Y", "Z"]
+    machine = machine_of(tmp_path, COREXY, Z="motors = 2")
+    assert machine.motors == ["X+Y", "X-Y", "Z", "Z2"]
+    assert machine.limited == ["X", "Y", "Z", "X+Y", "X-Y"]
+
+
+@pytest.mark.parametrize(
+    ("head", "more", "told"),
+    [
+        ('kinematics = "delta"', {}, "kinematics must be one of cartesian, corexy, corexz"),
+        (COREXY, {"axes": "X"}, 'kinematics = "corexy" needs an axis Y'),
+        (COREXZ, {"axes": "XY"}, 'kinematics = "corexz" needs an axis Z'),
+        (COREXY, {"scales": "X=80 Y=160"}, "X and Y share their motors, but steps_per_mm is 80 and 160"),
+        (COREXY, GANGED, 'axis 2: motors is 2, but with kinematics = "corexy" X and Y share two'),
+        (
+            COREXY,
+            {"X": 'home = "low"\nswitches = ["limit_low"]'},
+            "axis 1: switches: limit_low would block a motor",
+        ),
+        ("", {"Y": "motors = 4"}, "axis 2: motors must be 1 to 3"),
+        ("", {"Y": "motors = 1.5"}, "axis 2: motors must be a whole number"),
+        ("", {"X": "motors = 3", "Y": "motors = 3"}, "there are 7 motors; must be at most 6"),
+        (f"{COREXY}\n[motors]\nspeed = 0", {}, "motors: speed must be greater than 0"),
+        (f"{COREXY}\n[motors]\njump = 1", {}, "motors: unknown key 'jump'"),
+        ("[motors]\nspeed = 100", {}, "motors: its limits are those of motors that two axes share"),
+        (
+            f"{COREXY}\n[motors]\nspeed = 30000",
+            {},
+            "motors: speed is 21213.2; the pins allow at most 4419.41",
+        ),
+    ],
+)
+def test_files_that_contradict_themselves(tmp_path: Path, head: str, more: dict[str, str], told: str) -> None:
+    """One sentence each, with the key."""
+    with pytest.raises(BadInputError) as failure:
+        machine_of(tmp_path, head, **more)
+    text = str(failure.value)
+    assert told in text and "\n" not in text
+
+
+@pytest.mark.parametrize(
+    ("head", "more"), [(COREXY, {}), (COREXZ, {}), ("", GANGED)], ids=["xy", "xz", "ganged"]
+)
+def test_a_part(tmp_path: Path, head: str, more: dict[str, str]) -> None:
+    """Exact, within all limits, and as many steps of each motor as the end says."""
+    machine = machine_of(tmp_path, head, **more)
+    part = tmp_path / "part.nc"
+    part.write_text(PART)
+    words = ["run", str(part), "--machine", str(machine.path), "--out", str(tmp_path / "out"), "--plot"]
+    assert main(words) == 0
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text())
+    ends = machine.settings.motors.map(3) @ np.array([5, 3, 1]) * machine.settings.scales
+    assert summary["end"]["steps"] == ends.tolist() and summary["motors"] == machine.motors
+    assert summary["limits"]["acceleration"]["share"] > 0.9
+
+
+@pytest.fixture(params=["xy", "xz", "ganged", "limits"])
+def session(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[GrblConsole]:
+    """A console of each kind of machine."""
+    heads = {"xy": (COREXY, {}), "xz": (COREXZ, {}), "ganged": ("", GANGED), "limits": ("", LIMITS)}
+    head, more = heads[request.param]
+    machine = machine_of(tmp_path, head, **more)
+    with machine_at("model", machine) as engine:
+        made = GrblConsole(engine, machine)
+        made.limit(60)
+        yield made
+
+
+def motors_of(session: GrblConsole) -> list[float]:
+    """Where the motors are, mm."""
+    settings = session.grbl.machine.settings
+    positions = session.grbl.player.feed.driver.positions()
+    return [place / scale for place, scale in zip(positions, settings.scales, strict=False)]
+
+
+def test_home_jog_probe_and_limits_of_travel(session: GrblConsole) -> None:
+    """In axes, whatever the motors; after home the switches are at the ends of the travel."""
+    assert session.line("$H").endswith("ok")
+    assert session.fields("MPos") == pytest.approx([-29, -1, -1], abs=0.02)
+    assert session.line("$20=1") == "ok"
+    assert session.line("$J=G53 X1 F100") == "error:15"
+    assert session.line("$J=G91 X4 Y-3 F2000") == "ok"
+    session.rest()
+    assert session.fields("MPos") == pytest.approx([-25, -4, -1], abs=0.02)
+    rows = session.grbl.machine.settings.motors.map(3)
+    assert motors_of(session) == pytest.approx((rows @ session.fields("MPos")).tolist(), abs=0.01)
+    said = session.line("G91 G38.2 X1 Y1 Z-13 F300")
+    assert said.startswith("[PRB:") and said.endswith("ok")
+    x, y, z = (float(number) for number in re.findall(r"PRB:(.*):1", said)[0].split(","))
+    assert z == pytest.approx(-15 + 15 / 4, abs=0.05)
+    share = (z + 1) / -13
+    assert (x, y) == pytest.approx((-25 + share, -4 + share), abs=0.02)
+    assert "P" in session.status()["Pn"]
+    assert session.line("G90 G53 G0 Y0.1").splitlines() == ["ALARM:2", "error:9"]
+
+
+def test_a_stop_in_a_motion(session: GrblConsole) -> None:
+    """The position is that of all motors, and the next line leads to its target."""
+    assert session.line("$H").endswith("ok")
+    session.send(b"G53 G0 X-10 Y-12\n")
+    session.run(0.15)
+    session.send(b"\x18", 1)
+    x, y, z = session.fields("MPos")
+    assert -29 < x < -10 and -12 < y < -1 and z == pytest.approx(-1, abs=0.02)
+    rows = session.grbl.machine.settings.motors.map(3)
+    assert motors_of(session) == pytest.approx((rows @ [x, y, z]).tolist(), abs=0.02)
+    session.line("$X")
+    assert session.line("G53 G0 X-10 Y-12 Z-3") == "ok"
+    session.rest()
+    assert session.fields("MPos") == pytest.approx([-10, -12, -3], abs=0.001)
+    assert motors_of(session) == pytest.approx((rows @ [-10, -12, -3]).tolist(), abs=1e-9)
+
+
+def test_the_switch_of_a_ganged_axis_has_its_letter(tmp_path: Path) -> None:
+    """Also at the second motor, whose input is another one; and it stops all motors on one clock."""
+    machine = machine_of(tmp_path, **LIMITS)
+    with machine_at("model", machine) as engine:
+        session = GrblConsole(engine, machine)
+        session.limit(60)
+        session.line("$X")
+        session.send(b"G91 G1 Y15 F3000\n")
+        assert session.grbl.wait(lambda: "ALARM:1" in session.log, 5)
+        session.run(1)
+        assert session.status()["Pn"] == "Y"
+        one, other = (session.grbl.player.feed.driver.positions()[motor] for motor in (1, 3))
+        assert 850 < one == other
+
+
+def test_a_machine_with_a_board(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Sheet, summary and firmware name each motor; the small chip has none of this."""
+    text = (paths.examples / "machines" / "router.toml").read_text()
+    text = text.replace('drive = "DM542"', 'drive = "DM542"\nchip = "STM32F103CB"')
+    path = tmp_path / "machine.toml"
+    path.write_text(text.replace('name = "Y"', 'name = "Y"\nmotors = 2'))
+    assert main(["make", str(path), "--out", str(tmp_path / "out"), "--no-build"]) == 0
+    wires = (tmp_path / "out" / "wiring.txt").read_text()
+    assert re.search(r"step\[3\] .* drive Y2: STEP \(PUL\)", wires) and "home[3]" in wires
+    said = capsys.readouterr().out
+    assert "core   4 of" in said and "motors Y, Y2" in said
+    made = definitions(read_machine(path))
+    assert made["MOTORS"] == 4 and made["MOTORS_PLUS"] == 0x02040201 and made["MOTORS_MINUS"] == 0
+    path.write_text(text.replace("[switches]", 'kinematics = "corexy"\n[motors]\nspeed = 200\n[switches]'))
+    made = definitions(read_machine(path))
+    assert (made["MOTORS_PLUS"], made["MOTORS_MINUS"], made["MOTORS_SPEED"]) == (0x040103, 0x0200, 200)
+    path.write_text(path.read_text().replace("STM32F103CB", "STM32F103C8"))
+    assert main(["make", str(path), "--no-build"]) == 2
+    assert "the motors are X+Y, X-Y, Z; the firmware for STM32F103C8" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("head", "more"), [(COREXY, {}), ("", LIMITS)], ids=["xy", "limits"])
+def test_the_first_power_on(tmp_path: Path, head: str, more: dict[str, str]) -> None:
+    """`passo check` moves each axis by a step, and presses each switch once."""
+    check_machine(machine_of(tmp_path, head, **more).path, None)
