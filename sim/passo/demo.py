@@ -2,19 +2,23 @@
 """The demonstration: all examples on both engines, with pictures, tables and an overview."""
 
 import sys
+import time
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from typing import Any
 
 from passo.build import model_library, planner_library, rtl_library
 from passo.console import console, progress, table
+from passo.machine_file import read_machine
 from passo.move_file import read_channels
 from passo.output import make_folder, write_json
+from passo.part import read_part
+from passo.part_command import play_to
 from passo.plan import plan_channels
 from passo.plot import plot_file, plot_overview
 from passo.plot_scene import plot_scene
 from passo.report import summarize_channels, write_pulses
 from passo.report_page import write_page, write_scene_page
-from passo.run import Run, execute_channels, open_engine, parameters_of
+from passo.run import Run, execute_channels, open_engine, parameters_for, parameters_of
 from passo.scene import Scene
 from passo.scene_plan import scene_parameters
 from passo.scene_report import summarize_scene, write_scene_pulses
@@ -28,6 +32,8 @@ EXAMPLES = (
 LONG = ("four_motors", "there_and_back", "sigmoid", "turn")  # to simulate; these come first
 # examples with a machine or events
 MACHINES = ("homing", "probing", "hold_and_estop", "closed_loop", "laser", "threading")
+PROGRAMS = {"engraving": "corexy"}  # G-code and its machine
+ALL = (*EXAMPLES, *MACHINES, *PROGRAMS)
 
 
 def run_example(name: str) -> tuple[list[Run], dict[str, Any]]:
@@ -61,8 +67,25 @@ def run_machine(name: str) -> dict[str, Any]:
     return summary
 
 
+def run_program(name: str) -> dict[str, Any]:
+    """The same for G-code."""
+    folder, began = paths.examples / "gcode", time.monotonic()
+    machine = read_machine(folder / f"{PROGRAMS[name]}.toml")
+    part = read_part(folder / f"{name}.nc", machine)
+    played, _, summary = play_to(FOLDER / name, part, machine, "both")
+    return {
+        **summary,
+        "axes": [{"pulses": count} for count in summary["pulses"]],
+        "total_seconds": played.seconds,
+        "clocks_per_second": played.motions[-1][1] / (time.monotonic() - began),
+        "stops": [],
+    }
+
+
 def _run(name: str) -> tuple[list[Run], dict[str, Any]]:
-    """Either of them; return the runs of an example without a machine, and the summary."""
+    """Any of them; return the runs of an example without a machine, and the summary."""
+    if name in PROGRAMS:
+        return [], run_program(name)
     return ([], run_machine(name)) if name in MACHINES else run_example(name)
 
 
@@ -78,6 +101,10 @@ def _build_all(pool: ProcessPoolExecutor) -> None:
     """Build what the examples need, side by side and the longest first."""
     files = [read_channels(paths.examples / f"{name}.toml") for name in (*EXAMPLES, *MACHINES)]
     used = {scene_parameters(file) if file.setup else parameters_of(file) for file in files}
+    used |= {
+        parameters_for(len(read_machine(paths.examples / "gcode" / f"{name}.toml").motors))
+        for name in PROGRAMS.values()
+    }
     cores = sorted(used, key=lambda core: (core.channels, core.encoders), reverse=True)
     waiting = [pool.submit(rtl_library, core) for core in cores]
     waiting += [pool.submit(make) for make in (planner_library, model_library)]
@@ -90,13 +117,13 @@ def demo() -> bool:
     results = {}
     with ProcessPoolExecutor() as pool:
         _build_all(pool)
-        long = sorted((*EXAMPLES, *MACHINES), key=lambda name: name not in LONG)
+        long = sorted(ALL, key=lambda name: name not in LONG)
         waiting = {pool.submit(_run, name): name for name in long}
         with progress("examples", len(waiting)) as report:
             for count, done in enumerate(as_completed(waiting), 1):
                 results[waiting[done]] = done.result()
                 report(count)
-    summaries = {name: results[name][1] for name in (*EXAMPLES, *MACHINES)}
+    summaries = {name: results[name][1] for name in ALL}
     for name, summary in summaries.items():
         for problem in summary["problems"]:
             print(f"{name}: {problem}", file=sys.stderr)
@@ -118,6 +145,9 @@ def demo() -> bool:
         )
     console.print(shown)
     folder = short(FOLDER)
-    print(f"{folder}/NAME/ has for each move a zoomable report.html, motion.png, and its steps in pulses.csv")
+    print(
+        f"{folder}/NAME/ has for each move a zoomable report.html, motion.png, and its steps in pulses.csv;"
+    )
+    print(f"for G-code path.png: {', '.join(PROGRAMS)}")
     print(f"open: {folder}/demo.png")
     return all(summary["ok"] for summary in summaries.values())

@@ -1,0 +1,20 @@
+(A badge on a CoreXY laser: hatching at 45 degrees is what one motor makes alone)
+G21 G90 G94
+M4 S0
+G0 X5 Y15
+S600 G1 X15 Y5 F9000 (X - Y alone)
+G0 X18 Y6
+S600 G1 X6 Y18
+G0 X8 Y20
+S600 G1 X20 Y8
+G0 X20 Y12
+S600 G1 X12 Y20
+S0 G0 X25 Y12.5
+S900 G3 X25 Y12.5 I-12.5 J0 F6000 (the rim)
+S0 G0 X22 Y0
+S900 G1 X25 Y3
+G1 X22 Y3
+G1 X25 Y0
+M5
+G0 X0 Y0
+M2
