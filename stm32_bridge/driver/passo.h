@@ -109,8 +109,24 @@ enum passo_home_phase {
 	PASSO_HOME_APPROACH, /* seeks the switch */
 	PASSO_HOME_BACK_OFF,
 	PASSO_HOME_SLOW, /* seeks the edge slowly */
-	PASSO_HOME_PULL_OFF
+	PASSO_HOME_PULL_OFF,
+	/* squaring: one motor leaves its switch, further, and seeks its edge */
+	PASSO_HOME_LEAVE,
+	PASSO_HOME_LEFT,
+	PASSO_HOME_SEEK
 };
+#ifndef PASSO_CARTESIAN
+/* Motors of an axis that are homed one by one. */
+struct passo_square {
+	uint8_t first;                 /* to reach its switch */
+	uint8_t motor;                 /* whose switch ends the motion */
+	uint8_t stopped;               /* bits of those whose limits have ended it */
+	uint8_t known;                 /* bits of those whose edges are known */
+	uint8_t rounds;                /* slow approaches */
+	int32_t edge[PASSO_AXES_MAX];  /* positions of the motors */
+	int32_t begin[PASSO_AXES_MAX]; /* when the first edge was known */
+};
+#endif
 struct passo;
 struct passo_task {
 	enum passo_task_kind kind;
@@ -219,6 +235,9 @@ struct passo {
 	bool probe_fitted;          /* the probe is configured */
 	bool probe_inverted;
 	struct passo_task task;
+#ifndef PASSO_CARTESIAN
+	struct passo_square square;
+#endif
 	struct passo_turning turning;
 	struct passo_goto go; /* in progress */
 	/* for a motion whose ramps can be changed */

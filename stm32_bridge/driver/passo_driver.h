@@ -180,6 +180,13 @@ enum passo_error passo_driver_seek(
 /* The first motion of homing, and the following ones: PENDING, OK at the end, or an error. */
 enum passo_error passo_driver_home_first(struct passo *passo);
 enum passo_error passo_driver_home_next(struct passo *passo, const struct passo_trigger_report *report);
+#ifndef PASSO_CARTESIAN
+/* The same of an axis whose motors have a switch each; OK: it is homed. */
+bool passo_driver_squares(const struct passo_home *home);
+enum passo_error passo_driver_check_square(const struct passo *passo, const struct passo_home *home);
+enum passo_error passo_driver_square_first(struct passo *passo);
+enum passo_error passo_driver_square_next(struct passo *passo, const struct passo_trigger_report *report);
+#endif
 /* Changes the ramps of a running motion: attempts until one is in time.
  *
  *     while (error == LATE && passo_driver_steers(passo, &steering)) {

@@ -27,7 +27,13 @@ static enum passo_error check_home(const struct passo *passo, const struct passo
 		return of_plan(PASSO_PLAN_TOO_MANY_STEPS);
 	if (home->speed == 0u || home->slow_speed == 0u)
 		return of_plan(PASSO_PLAN_NO_SPEED);
-	return home->acceleration != 0u ? PASSO_OK : of_plan(PASSO_PLAN_NO_ACCELERATION);
+	if (home->acceleration == 0u)
+		return of_plan(PASSO_PLAN_NO_ACCELERATION);
+#ifndef PASSO_CARTESIAN
+	if (passo_driver_squares(home))
+		return passo_driver_check_square(passo, home);
+#endif
+	return PASSO_OK;
 }
 
 enum passo_error passo_home(struct passo *passo, const struct passo_home *homes, uint8_t count)
@@ -49,7 +55,8 @@ static int32_t sign_of(const struct passo_home *home, uint32_t motor)
 {
 #ifndef PASSO_CARTESIAN
 	if ((home->forward | home->backward) != 0u)
-		return (int32_t)(home->forward >> motor & 1u) - (int32_t)(home->backward >> motor & 1u);
+		return (int32_t)((unsigned)home->forward >> motor & 1u)
+		     - (int32_t)((unsigned)home->backward >> motor & 1u);
 #endif
 	return motor == home->axis;
 }
@@ -91,6 +98,13 @@ static enum passo_error go(
 enum passo_error passo_driver_home_first(struct passo *passo)
 {
 	const struct passo_home *home = passo->task.home;
+
+#ifndef PASSO_CARTESIAN
+	if (passo_driver_squares(home)) {
+		set_homed(passo, home, false);
+		return passo_driver_square_first(passo);
+	}
+#endif
 	enum passo_error error = go(passo, PASSO_HOME_APPROACH, RISING, home->distance, home->speed);
 
 	set_homed(passo, home, false);
@@ -177,6 +191,13 @@ enum passo_error passo_driver_home_next(struct passo *passo, const struct passo_
 	const uint8_t axis = passo->task.home->axis;
 	int32_t now[PASSO_AXES_MAX];
 
+#ifndef PASSO_CARTESIAN
+	if (passo_driver_squares(passo->task.home)) {
+		const enum passo_error error = passo_driver_square_next(passo, report);
+
+		return error == PASSO_OK ? end_axis(passo) : error;
+	}
+#endif
 	if (passo->task.phase == PASSO_HOME_BACK_OFF)
 		return approach_slowly(passo);
 	if (passo->task.phase == PASSO_HOME_PULL_OFF)

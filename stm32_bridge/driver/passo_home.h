@@ -26,6 +26,12 @@ struct passo_home {
 #ifndef PASSO_CARTESIAN
 	uint8_t forward, backward; /* bits of the motors that move, the same way or the other way; 0: the axis
 	                              alone. Its position is the mean of theirs, with these signs */
+	/* Squaring, if above 0: each motor of `forward` by its own limit switch, the source. The most steps
+	 * by which any of them moves further than another one while they seek their switches; at least
+	 * back_off. */
+	uint32_t racking;
+	const int32_t *offset; /* of motors, at most pull_off: position of its edge from that of the axis,
+	                          steps; null: 0 */
 #endif
 	enum passo_trigger_source source; /* HOME, LIMIT_LOW or LIMIT_HIGH */
 	int32_t distance;                 /* longest travel to the switch, steps; the sign is the direction */
@@ -41,6 +47,12 @@ struct passo_home {
  * TOO_MANY_STEPS, NO_SPEED, NO_ACCELERATION, those of a move; of passo_poll() also SWITCH_MISSED,
  * SWITCH_LEVEL if the switch stays active, INPUTS_UNKNOWN if it is not stable. */
 enum passo_error passo_home(struct passo *passo, const struct passo_home *homes, uint8_t count);
+#ifndef PASSO_CARTESIAN
+/* After SWITCH_MISSED of passo_poll(): whether a motor did not reach its switch within `racking`, and which.
+ */
+bool passo_home_is_skewed(const struct passo *passo, uint8_t *motor);
+#endif
+
 /* Whether an axis is homed. It is not after its drive is disabled, after a stop by e-stop, alarm, watchdog or
  * following error, after any other hard stop of the axis at speed, after a core reset, and after
  * passo_open(); see the table in docs/machine.md. No frame. */

@@ -63,6 +63,27 @@ static enum passo_error cause(const struct passo *passo)
 	return error != PASSO_OK ? error : PASSO_ERROR_STOPPED;
 }
 
+#ifndef PASSO_CARTESIAN
+/* Motors of the axis being squared whose limits have stopped the channel; and whether it was stopped by them
+ * alone: it is clear then. */
+static enum passo_error leave_limit(
+    struct passo *passo, const struct passo_trigger_report *report, bool *by_limit)
+{
+	struct passo_readings readings = {.axes = 0};
+	enum passo_error error = PASSO_OK;
+
+	if (passo_driver_is_stopped(passo) && cause(passo) == PASSO_ERROR_LIMIT)
+		error = passo_read_inputs(passo, &readings);
+	passo->square.stopped = readings.axes & passo->task.home->forward;
+	*by_limit = passo->square.stopped != 0u && !report->fired;
+	if (error != PASSO_OK || !*by_limit)
+		return error;
+	passo->task.armed = false;
+	error = passo_driver_disarm(passo);
+	return error == PASSO_OK ? passo_clear(passo) : error;
+}
+#endif
+
 /* A motion of the task has ended. */
 static enum passo_error next(struct passo *passo)
 {
@@ -73,6 +94,15 @@ static enum passo_error next(struct passo *passo)
 		error = passo_read_trigger(passo, &report);
 	if (error != PASSO_OK)
 		return error;
+#ifndef PASSO_CARTESIAN
+	if (passo->task.kind == PASSO_TASK_HOME && passo_driver_squares(passo->task.home)) {
+		bool by_limit;
+
+		error = leave_limit(passo, &report, &by_limit);
+		if (error != PASSO_OK || by_limit)
+			return error == PASSO_OK ? passo_driver_home_next(passo, &report) : error;
+	}
+#endif
 	if (passo_driver_is_stopped(passo) && !report.fired)
 		return cause(passo);
 	if (report.fired) {

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: MIT
+"""Squaring (stm32_bridge/driver/passo_square.c): each motor of an axis at its own switch."""
+
+import random
+from dataclasses import replace
+
+import pytest
+from passo.random_cases import seed
+
+from benchmarks.squaring import CLOCK_HZ, Gantry, begin, gantry_of, problems, square
+from tests.helpers.driver_wire import error_of, struct
+
+SKEWED = Gantry((900, 1200), (0, 10))
+
+
+def test_random_gantries() -> None:
+    """The short form of `python -m benchmarks.squaring`."""
+    rng = random.Random(seed())
+    for _ in range(12):
+        gantry = gantry_of(rng)
+        assert problems(gantry, square(gantry)) == [], gantry
+
+
+@pytest.mark.parametrize("high", [False, True])
+@pytest.mark.parametrize("start", [(1500, 1300), (-20, 400), (-20, -5), (300, -60), (40, 40)])
+def test_wherever_it_starts(start: tuple[int, int], high: bool) -> None:
+    """Also with a motor, or both, at its switch: square, and at one position."""
+    sign = -1 if high else 1
+    gantry = Gantry((sign * start[0], sign * start[1]), (0, 0), high, (0, 25, 0), racking=500)
+    made = square(gantry)
+    assert problems(gantry, made) == [] and made.skewed is None
+    assert made.positions == [sign * gantry.pull_off] * 2
+
+
+@pytest.mark.parametrize(("start", "motor"), [((900, 1450), 1), ((1450, 900), 0), ((900, 1000, 1450), 2)])
+def test_a_skew_beyond_the_bound_names_its_motor(start: tuple[int, ...], motor: int) -> None:
+    """And the motors are not further apart than the bound."""
+    made = square(Gantry(start, (0,) * len(start), racking=400))
+    assert (made.error, made.skewed) == ("SWITCH_MISSED", motor)
+    assert made.racking <= 400
+
+
+@pytest.mark.parametrize("motor", [0, 1])
+def test_a_switch_that_is_never_pressed(motor: int) -> None:
+    """The other motor finds its own; then the bound ends it."""
+    made = square(replace(SKEWED, stuck={motor: False}))
+    assert (made.error, made.skewed) == ("SWITCH_MISSED", motor) and made.racking <= SKEWED.racking
+
+
+@pytest.mark.parametrize("motor", [0, 1])
+def test_a_switch_that_sticks(motor: int) -> None:
+    """All motors leave it together, and it is not left: no racking."""
+    made = square(replace(SKEWED, stuck={motor: True}))
+    assert (made.error, made.skewed) == ("SWITCH_MISSED", None) and made.racking == 0
+
+
+def test_an_alarm_stops_all_motors_on_one_clock() -> None:
+    driver, machine, (homes, _) = begin(SKEWED)
+    driver.call("configure_inputs", 1, struct("input_config", limit_low=True, limit_soft=True))
+    driver.call("home", homes, 1)
+    machine.run(CLOCK_HZ // 50)
+    driver.call("poll")
+    machine.set("alarm", 2)
+    machine.run(CLOCK_HZ // 100)
+    one, other = machine.positions[0] - SKEWED.start[0], machine.positions[1] - SKEWED.start[1]
+    assert one == other < 0
+    assert error_of(driver, "poll") == "ALARM" and not driver.lib.passo_is_homed(driver.c, 0)
+    machine.engine.close()
+
+
+def test_power_off_within_the_cycle() -> None:
+    """Neither motor is homed, and the next cycle squares what is left."""
+    driver, machine, (homes, _) = begin(SKEWED)
+    driver.call("home", homes, 1)
+    for _ in range(400):
+        driver.call("poll")
+        machine.run(CLOCK_HZ // 2000)
+    places = tuple(int(place) for place in machine.positions[:2])
+    assert places != SKEWED.start and driver.is_moving
+    assert not any(driver.lib.passo_is_homed(driver.c, motor) for motor in (0, 1))
+    machine.engine.close()
+    rest = replace(SKEWED, start=places)
+    assert problems(rest, square(rest)) == []
+
+
+@pytest.mark.parametrize(
+    ("changes", "error"),
+    [
+        ({"backward": 2}, "ARGUMENT"),
+        ({"forward": 0}, "ARGUMENT"),
+        ({"forward": 7}, "NO_SWITCH"),  # the switch of the third motor is missing
+        ({"source": 3}, "NO_SWITCH"),  # one home switch for all
+        ({"back_off": 401}, "ARGUMENT"),
+        ({"pull_off": 5}, "ARGUMENT"),  # the offset is more
+    ],
+)
+def test_what_no_gantry_has_is_refused(changes: dict[str, int], error: str) -> None:
+    driver, machine, (homes, kept) = begin(replace(SKEWED, offsets=(0, 6, 0)))
+    for name, value in changes.items():
+        setattr(homes[0], name, value)
+    assert error_of(driver, "home", homes, 1) == error and len(kept)
+    machine.engine.close()
