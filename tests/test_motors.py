@@ -10,15 +10,16 @@ import numpy as np
 import pytest
 from passo.cli import main
 from passo.failure import BadInputError
-from passo.grbl_setup import machine_at
+from passo.grbl_setup import attach, core_for, machine_at
 from passo.machine_check import check_machine
 from passo.machine_file import MachineFile, read_machine
 from passo.make_command import definitions
+from passo.run import open_engine
 from passo.toolchain import paths
 
 from tests.helpers.grbl_console import GrblConsole
 
-HEAD = "clock_hz = 4_000_000\nprobe = true\n{head}\n[home]\nseek = 40\nspeed = 10\n"
+HEAD = "clock_hz = 4_000_000\nprobe = true\n{head}\n[home]\nseek = 40\nspeed = 10\n{home}\n"
 AXIS = (
     '[[axis]]\nname = "{name}"\nsteps_per_mm = {scale}\nspeed = 100\nacceleration = 1000\n'
     "travel = {travel}\n{more}\n"
@@ -28,13 +29,15 @@ TRAVELS = {"X": 30, "Y": 20, "Z": 15, "A": 90}
 PART = "G21 G90\nG0 X5 Y3\nG1 X12 Y3 F3000\nG2 X12 Y9 J3\nG1 X5 Y3 Z1\nM2\n"
 
 
-def machine_of(folder: Path, head: str = "", axes: str = "XYZ", scales: str = "", **more: str) -> MachineFile:
+def machine_of(
+    folder: Path, head: str = "", axes: str = "XYZ", scales: str = "", home: str = "", **more: str
+) -> MachineFile:
     """A machine with keys at the top, and more of some axes."""
     homes = {**HOMES, "Z": 'home = "high"\nswitches = ["home"]', **more}
     given = dict(word.split("=") for word in scales.split())
     path = folder / "machine.toml"
     path.write_text(
-        HEAD.format(head=head)
+        HEAD.format(head=head, home=home)
         + "".join(
             AXIS.format(name=name, scale=given.get(name, 80), travel=TRAVELS[name], more=homes.get(name, ""))
             for name in axes
@@ -183,6 +186,62 @@ def test_the_switch_of_a_ganged_axis_has_its_letter(tmp_path: Path) -> None:
         assert 850 < one == other
 
 
+def squaring(folder: Path, more: str = "", racking: str = "racking = 3") -> MachineFile:
+    """A gantry of two motors, each with its own limit switch."""
+    return machine_of(folder, home=racking, **{"Y": f"{LIMITS['Y']}\n{more}"})
+
+
+@pytest.mark.parametrize(("skew", "offset"), [(0, 0.0), (-100, 0.0), (180, 0.5), (-150, -0.25)])
+def test_home_squares_a_gantry_that_starts_skewed(tmp_path: Path, skew: int, offset: float) -> None:
+    """Its motors are as far from their switches as the pull-off and their offsets say; then lines keep it."""
+    machine = squaring(tmp_path, f"offsets = [0, {offset}]")
+    with open_engine("model", core_for(machine), machine.clock_hz) as engine:
+        ((library, rig),) = attach(engine, machine, {3: skew})
+        session = GrblConsole(engine, machine)
+        session.limit(60)
+        assert session.line("$H").endswith("ok")
+        for y in (-1.0, -9.0):
+            session.line(f"G53 G0 Y{y}")
+            session.rest()
+            ends = [library.passo_rig_position(rig, motor) - 80 * 20 for motor in (1, 3)]
+            assert ends == pytest.approx([80 * y, 80 * (y - offset)], abs=1)
+
+
+@pytest.mark.parametrize(("skew", "name"), [(-300, "Y2"), (300, "Y")])
+def test_a_gantry_that_is_too_skewed(tmp_path: Path, skew: int, name: str) -> None:
+    """The error names the motor and the distance, and the machine stays locked."""
+    machine = squaring(tmp_path)
+    with open_engine("model", core_for(machine), machine.clock_hz) as engine:
+        attach(engine, machine, {3: skew})
+        session = GrblConsole(engine, machine)
+        session.limit(60)
+        said = session.line("$H")
+        assert f"[MSG:Motor {name}: no switch within 3.000 mm]" in said and "ALARM:9" in said
+        assert session.status()["state"] == "Alarm"
+
+
+@pytest.mark.parametrize(
+    ("more", "racking", "told"),
+    [
+        ("", "racking = 0.5", "home: racking must be at least pull_off, 1 mm"),
+        ("offsets = [0, 2]", "racking = 3", "axis 2: offsets must be at most pull_off, 1 mm"),
+        ("offsets = [0]", "racking = 3", "axis 2: offsets must be an array of 2 numbers"),
+        ("offsets = [0, 0.1]", "", "axis 2: offsets are of motors that square: home: racking is missing"),
+    ],
+)
+def test_gantries_that_contradict_themselves(tmp_path: Path, more: str, racking: str, told: str) -> None:
+    with pytest.raises(BadInputError) as failure:
+        squaring(tmp_path, more, racking)
+    assert told in str(failure.value)
+
+
+def test_two_motors_need_two_switches(tmp_path: Path) -> None:
+    """One home switch squares nothing; nor does an axis with one motor."""
+    for more, told in ((GANGED, "2 motors and one home switch"), ({}, "home: racking needs an axis")):
+        with pytest.raises(BadInputError, match=told):
+            machine_of(tmp_path, home="racking = 3", **more)
+
+
 def test_a_machine_with_a_board(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Sheet, summary and firmware name each motor; the small chip has none of this."""
     text = (paths.examples / "machines" / "router.toml").read_text()
@@ -196,6 +255,12 @@ def test_a_machine_with_a_board(tmp_path: Path, capsys: pytest.CaptureFixture[st
     assert "core   4 of" in said and "motors Y, Y2" in said
     made = definitions(read_machine(path))
     assert made["MOTORS"] == 4 and made["MOTORS_PLUS"] == 0x02040201 and made["MOTORS_MINUS"] == 0
+    gantry = text.replace('name = "Y"', 'name = "Y"\nmotors = 2\noffsets = [0, -0.12]')
+    gantry = gantry.replace("[switches]", "[home]\nracking = 4\n[switches]")
+    i = gantry.index('name = "Y"')
+    path.write_text(gantry[:i] + gantry[i:].replace('["home"]', '["limit_low"]', 1))
+    made = definitions(read_machine(path))
+    assert (made["SQUARED"], made["RACKING"], made["OFFSETS"]) == (2, 4000, "0,0,0,-120")
     path.write_text(text.replace("[switches]", 'kinematics = "corexy"\n[motors]\nspeed = 200\n[switches]'))
     made = definitions(read_machine(path))
     assert (made["MOTORS_PLUS"], made["MOTORS_MINUS"], made["MOTORS_SPEED"]) == (0x040103, 0x0200, 200)

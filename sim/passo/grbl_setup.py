@@ -124,6 +124,11 @@ def setup_of(machine: MachineFile, parameters: Parameters, defaults: Any, pages:
     made.homes = machine.mask("home")
     for axis, end in enumerate(machine.ends):
         made.homed |= (end.home is not None) << axis
+    made.squared = sum(1 << axis for axis in machine.squared)
+    made.racking = round(machine.switches.racking * 1000)
+    for axis in machine.squared:
+        for motor, offset in zip(machine.motors_of(axis), machine.ends[axis].offsets, strict=False):
+            made.offset[motor] = round(offset * 1000)
     made.probe, made.pages = machine.switches.probe, pages
     return made
 
@@ -134,9 +139,10 @@ def core_for(machine: MachineFile) -> Parameters:
     return replace(core, clock_hz=machine.clock_hz, **dict.fromkeys(machine.parts, 1))
 
 
-def attach(engine: Any, machine: MachineFile) -> None:
+def attach(engine: Any, machine: MachineFile, skews: dict[int, int] | None = None) -> Any:
     """A simulated machine at the core: each axis in the middle of its travel, switches at its ends.
 
+    `skews`: steps by which motors begin elsewhere. Returns the rigs, with their libraries.
     For the probe there is a plate that Z (or the last axis) touches a quarter of its travel below the middle.
     """
     config = ffi().new("struct passo_rig_config *")
@@ -147,7 +153,7 @@ def attach(engine: Any, machine: MachineFile) -> None:
         for limits, end in zip(machine.settings.axes, machine.ends, strict=True)
     ]
     for motor, start in enumerate(rows @ np.array(travels) // 2):
-        config.start[motor] = start
+        config.start[motor] = start + (skews or {}).get(motor, 0)
     for axis, (travel, end) in enumerate(zip(travels, machine.ends, strict=True)):
         for switch in end.switches:
             above = "limit_high" in (switch, f"limit_{end.home}")
@@ -167,7 +173,7 @@ def attach(engine: Any, machine: MachineFile) -> None:
             wire.share, wire.at = rows[wire.other][axis], 2 * at
         wire.is_switch, wire.inverted = True, machine.switches.inverted and pin != NUMBERS["probe"]
     config.wires = len(wires)
-    engine.attach(config)
+    return engine.attach(config)
 
 
 @contextmanager

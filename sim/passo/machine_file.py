@@ -25,6 +25,7 @@ from passo.table_values import (
     read_integer,
     read_number,
     read_positive,
+    read_signed,
     read_subtable,
     read_tables,
     read_word,
@@ -39,7 +40,7 @@ FILE_KEYS = (
 )
 AXIS_KEYS = (
     *("name", "steps_per_mm", "speed", "acceleration", "jerk", "jump", "travel", "home", "switches"),
-    "motors",
+    *("motors", "offsets"),
 )
 MOTOR_KEYS = ("speed", "acceleration", "jerk")
 KINEMATICS = {"cartesian": (), "corexy": (0, 1), "corexz": (0, 2)}  # the two axes that share two motors
@@ -64,6 +65,7 @@ class AxisEnds:
     home: str | None = None  # the end with its home
     switches: tuple[str, ...] = ()
     motors: int = 1
+    offsets: tuple[float, ...] = ()  # mm, of each motor: its edge from that of the axis; none: 0
 
     @property
     def homing_switch(self) -> str | None:
@@ -85,6 +87,7 @@ class Switches:
     seek: float = 20  # mm/s
     speed: float = 2  # mm/s
     pull_off: float = 1  # mm
+    racking: float = 0  # mm that motors of an axis may be apart when they square; 0: they do not
 
 
 @dataclass(frozen=True)
@@ -122,6 +125,11 @@ class MachineFile:
         """Names of what has limits: the axes, and the motors that move two of them."""
         own = [name for name in self.motors if len(name) > 2]
         return [*AXIS_LETTERS[: len(self.ends)], *own]
+
+    @property
+    def squared(self) -> list[int]:
+        """Axes whose motors have a limit switch each, by which they home."""
+        return [axis for axis, end in enumerate(self.ends) if self.switches.racking and _squares(end)]
 
     def motors_of(self, axis: int) -> list[int]:
         """The motors that an axis is named after: its own, and those behind the axes."""
@@ -186,6 +194,7 @@ def _machine(path: Path, data: Table) -> MachineFile:
     )
     kinematics, motors = _motors(data, axes, ends)
     switches = _switches(data)
+    _check_squared(ends, switches)
     spindle = read_positive(data, "spindle_maximum") if "spindle_maximum" in data else 0
     board, clock_hz = _board(
         data, wanted_hz, ends, len(motors.map(len(axes))), _parts(ends, switches, spindle)
@@ -213,6 +222,28 @@ def _machine(path: Path, data: Table) -> MachineFile:
         read_word(data, "chip", CHIPS) if "chip" in data else CHIPS[0],
         kinematics,
     )
+
+
+def _squares(end: AxisEnds) -> bool:
+    return end.motors > 1 and end.home is not None
+
+
+def _check_squared(ends: Sequence[AxisEnds], switches: Switches) -> None:
+    """Each motor of an axis that squares has its own limit switch, and moves off it in any case."""
+    for number, end in enumerate(ends, 1):
+        if end.offsets and not (switches.racking and _squares(end)):
+            raise BadValueError(f"axis {number}: offsets are of motors that square: home: racking is missing")
+        if switches.racking and _squares(end) and end.homing_switch == "home":
+            raise BadValueError(
+                f"axis {number}: {end.motors} motors and one home switch: to square, each has "
+                f'switches = ["limit_{end.home}"]'
+            )
+        if any(abs(offset) > switches.pull_off for offset in end.offsets):
+            raise BadValueError(f"axis {number}: offsets must be at most pull_off, {switches.pull_off:g} mm")
+    if switches.racking and not any(map(_squares, ends)):
+        raise BadValueError("home: racking needs an axis with a home and several motors")
+    if switches.racking and switches.racking < switches.pull_off:
+        raise BadValueError(f"home: racking must be at least pull_off, {switches.pull_off:g} mm")
 
 
 def _motors(data: Table, axes: Sequence[PathAxis], ends: Sequence[AxisEnds]) -> tuple[str, Motors]:
@@ -359,7 +390,7 @@ def _flag(table: Table, key: str, default: bool) -> bool:
 def _switches(data: Table) -> Switches:
     table, home, default = read_subtable(data, "switches"), read_subtable(data, "home"), Switches()
     within("switches", lambda: check_known(table, SWITCH_KEYS))
-    within("home", lambda: check_known(home, HOME_KEYS))
+    within("home", lambda: check_known(home, (*HOME_KEYS, "racking")))
     speeds = {key: _number(home, key, getattr(default, key)) for key in HOME_KEYS}
     for key, value in speeds.items():
         if not value:
@@ -369,6 +400,7 @@ def _switches(data: Table) -> Switches:
         debounce=_number(table, "debounce", default.debounce),
         stop=_flag(table, "stop", default.stop),
         probe=_flag(data, "probe", default.probe),
+        racking=_number(home, "racking", default.racking),
         soft_limits=_flag(data, "soft_limits", default.soft_limits),
         **speeds,
     )
@@ -386,10 +418,17 @@ def _ends(table: Table) -> AxisEnds:
     if not travel:
         raise BadValueError("travel must be greater than 0")
     motors = read_integer(table, "motors", 1, MOTORS_MOST) if "motors" in table else 1
-    ends = AxisEnds(travel, home, tuple(switches), motors)
+    ends = AxisEnds(travel, home, tuple(switches), motors, _offsets(table, motors))
     if ends.homing_switch not in (None, *switches):
         raise BadValueError(f'home = "{home}" needs "home" or "{ends.homing_switch}" in switches')
     return ends
+
+
+def _offsets(table: Table, motors: int) -> tuple[float, ...]:
+    given = table.get("offsets", [])
+    if not isinstance(given, list) or len(given) not in (0, motors):
+        raise BadValueError(f"offsets must be an array of {motors} numbers, one for each motor")
+    return tuple(float(read_signed({"offsets": value}, "offsets")) for value in given)
 
 
 def _number(table: Table, key: str, default: float) -> float:

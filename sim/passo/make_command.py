@@ -8,6 +8,7 @@ import re
 import shlex
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 from passo_fpga import synth
 from passo_fpga.boards import OSCILLATOR, Board, board, names
@@ -242,7 +243,7 @@ def at_home(machine: MachineFile, chosen: Board) -> dict[str, int]:
     return chosen.limits_at_home(machine.mask("limit_low"), machine.mask("limit_high"))
 
 
-def definitions(machine: MachineFile) -> dict[str, int]:
+def definitions(machine: MachineFile) -> dict[str, Any]:
     """Of the firmware, see grbl_machine.h."""
     homed = sum((end.home is not None) << axis for axis, end in enumerate(machine.ends))
     return {
@@ -254,6 +255,20 @@ def definitions(machine: MachineFile) -> dict[str, int]:
         "PROBE": int(machine.switches.probe),
         "OUTPUTS": int("outputs" in machine.parts),
         **_motors(machine.settings.motors),
+        **(_squares(machine) if machine.squared else {}),
+    }
+
+
+def _squares(machine: MachineFile) -> dict[str, Any]:
+    """Lengths in um."""
+    offsets = [0.0] * len(machine.motors)
+    for axis in machine.squared:
+        for motor, offset in zip(machine.motors_of(axis), machine.ends[axis].offsets, strict=False):
+            offsets[motor] = offset
+    return {
+        "SQUARED": sum(1 << axis for axis in machine.squared),
+        "RACKING": round(machine.switches.racking * 1000),
+        "OFFSETS": ",".join(str(round(offset * 1000)) for offset in offsets),
     }
 
 

@@ -49,7 +49,12 @@ struct passo_grbl_setup {
 	void (*defaults)(struct passo_grbl_settings *settings);
 	uint8_t limits_low, limits_high, homes; /* fitted switches */
 	uint8_t homed; /* axes that home; without a home switch on their limit switch */
-	bool probe;    /* a probe is fitted */
+#ifndef PASSO_CARTESIAN
+	uint8_t squared; /* of these, axes each of whose motors has its own limit switch at that end */
+	int32_t racking; /* um: see passo_home.h */
+	int32_t offset[PASSO_AXES_MAX]; /* of motors, um: see passo_home.h */
+#endif
+	bool probe;                              /* a probe is fitted */
 	const struct passo_storage_pages *pages; /* null: no persistent storage */
 	/* Takes the text of a `$` line that is the board's own, at rest; null: it has none. */
 	bool (*take_line)(const char *text);
@@ -65,6 +70,9 @@ struct passo_grbl {
 	struct passo_path_settings path; /* active */
 	struct passo_player_machine limits;
 	struct passo_home home[PASSO_GCODE_AXES_MAX];
+#ifndef PASSO_CARTESIAN
+	int32_t offset[PASSO_AXES_MAX]; /* of motors, in steps */
+#endif
 	struct passo_gcode_line line;
 	/* written by passo_grbl_receive(), also in an interrupt */
 	char received[PASSO_GRBL_RECEIVED];

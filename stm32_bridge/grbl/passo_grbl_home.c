@@ -37,6 +37,44 @@ static uint8_t motors_along(const struct passo_grbl *grbl, unsigned axis, bool b
 		bits |= (uint8_t)((rows[motor] >> axis & 1u) << motor);
 	return bits;
 }
+
+static bool squares(const struct passo_grbl *grbl, unsigned axis)
+{
+	return (grbl->setup->squared >> axis & 1) != 0;
+}
+
+static int32_t steps_of_um(const struct passo_grbl *grbl, unsigned axis, int32_t length)
+{
+	const int32_t size = steps_of(grbl, axis, (uint64_t)(length < 0 ? -(int64_t)length : length) * 1000u);
+
+	return length < 0 ? -size : size;
+}
+
+static void set_offsets(struct passo_grbl *grbl)
+{
+	for (unsigned motor = 0; motor < passo_grbl_motors(grbl); motor++)
+		grbl->offset[motor] =
+		    steps_of_um(grbl, passo_grbl_axis_of(grbl, motor), grbl->setup->offset[motor]);
+}
+
+/* The motor that did not reach its switch within the bound. */
+static void tell_skewed(struct passo_grbl *grbl)
+{
+	uint8_t motor;
+
+	if (!passo_home_is_skewed(grbl->player->feed->passo, &motor))
+		return;
+	passo_grbl_say(grbl, "[MSG:Motor ");
+	passo_grbl_say(grbl, (const char[]){passo_gcode_axis_letter(passo_grbl_axis_of(grbl, motor)), '\0'});
+	for (unsigned other = motor, number = 1; other-- > 0;) {
+		number += passo_grbl_axis_of(grbl, other) == passo_grbl_axis_of(grbl, motor);
+		if (other == 0 && number > 1)
+			passo_grbl_say_number(grbl, number);
+	}
+	passo_grbl_say(grbl, ": no switch within ");
+	passo_grbl_say_thousandths(grbl, grbl->setup->racking * INT64_C(1000));
+	passo_grbl_say(grbl, " mm]\r\n");
+}
 #endif
 
 static struct passo_home home_of(const struct passo_grbl *grbl, uint8_t axis)
@@ -52,6 +90,8 @@ static struct passo_home home_of(const struct passo_grbl *grbl, uint8_t axis)
 #ifndef PASSO_CARTESIAN
 	    .forward = motors_along(grbl, axis, false),
 	    .backward = motors_along(grbl, axis, true),
+	    .racking = squares(grbl, axis) ? (uint32_t)steps_of_um(grbl, axis, grbl->setup->racking) : 0u,
+	    .offset = grbl->offset,
 #endif
 	    .source = grbl->setup->homes >> axis & 1u ? PASSO_TRIGGER_SOURCE_HOME
 	            : low                             ? PASSO_TRIGGER_SOURCE_LIMIT_LOW
@@ -74,6 +114,9 @@ enum passo_gcode_error passo_grbl_home(struct passo_grbl *grbl)
 	struct passo *passo = grbl->player->feed->passo;
 	uint8_t count = 0;
 
+#ifndef PASSO_CARTESIAN
+	set_offsets(grbl);
+#endif
 	for (unsigned i = 0; i < PASSO_GCODE_AXES_MAX; i++) {
 		const uint8_t axis = ORDER[i];
 
@@ -94,6 +137,9 @@ static void fail(struct passo_grbl *grbl, enum passo_error error)
 {
 	enum passo_grbl_alarm alarm = PASSO_GRBL_ABORTED;
 
+#ifndef PASSO_CARTESIAN
+	tell_skewed(grbl);
+#endif
 	if (error == PASSO_ERROR_SWITCH_MISSED)
 		alarm = PASSO_GRBL_HOME_MISSED;
 	else if (error == PASSO_ERROR_SWITCH_LEVEL)

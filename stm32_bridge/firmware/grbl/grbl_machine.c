@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "grbl_machine.h"
 
+#include <string.h>
+
 #define POLLS 2000u   /* of the feed in a second, at least */
 #define RESERVES 200u /* in a second: the core has so much, however the lines come */
 
@@ -51,6 +53,8 @@ _Static_assert(MOTORS == 0, "the image has a motor for each axis");
 _Static_assert(
     MOTORS == 0 || (MOTORS >= AXES && MOTORS <= PASSO_PATH_AXES_MAX), "the image has fewer motors");
 
+static const int32_t offsets[PASSO_AXES_MAX] = {OFFSETS};
+
 static void set_motors(struct passo_path_settings *path)
 {
 	const uint64_t plus = MOTORS_PLUS, minus = MOTORS_MINUS;
@@ -95,5 +99,8 @@ void grbl_machine(
 		setup->path.machine.axes = AXES_USED;
 #ifndef PASSO_CARTESIAN
 	set_motors(&setup->path);
+	setup->squared = SQUARED;
+	setup->racking = RACKING;
+	memcpy(setup->offset, offsets, sizeof offsets);
 #endif
 }
