@@ -8,6 +8,7 @@ from typing import Any
 
 from passo.build import model_library, planner_library, rtl_library
 from passo.console import console, progress, table
+from passo.demo_gantry import gantry_core, run_gantry
 from passo.machine_file import read_machine
 from passo.move_file import read_channels
 from passo.output import make_folder, write_json
@@ -33,7 +34,8 @@ LONG = ("four_motors", "there_and_back", "sigmoid", "turn")  # to simulate; thes
 # examples with a machine or events
 MACHINES = ("homing", "probing", "hold_and_estop", "closed_loop", "laser", "threading")
 PROGRAMS = {"engraving": "corexy"}  # G-code and its machine
-ALL = (*EXAMPLES, *MACHINES, *PROGRAMS)
+GANTRY = "gantry"  # a machine that is homed
+ALL = (*EXAMPLES, *MACHINES, *PROGRAMS, GANTRY)
 
 
 def run_example(name: str) -> tuple[list[Run], dict[str, Any]]:
@@ -86,6 +88,8 @@ def _run(name: str) -> tuple[list[Run], dict[str, Any]]:
     """Any of them; return the runs of an example without a machine, and the summary."""
     if name in PROGRAMS:
         return [], run_program(name)
+    if name == GANTRY:
+        return [], run_gantry(paths.examples / "gcode" / f"{name}.toml", FOLDER / name)
     return ([], run_machine(name)) if name in MACHINES else run_example(name)
 
 
@@ -101,6 +105,7 @@ def _build_all(pool: ProcessPoolExecutor) -> None:
     """Build what the examples need, side by side and the longest first."""
     files = [read_channels(paths.examples / f"{name}.toml") for name in (*EXAMPLES, *MACHINES)]
     used = {scene_parameters(file) if file.setup else parameters_of(file) for file in files}
+    used |= {gantry_core(read_machine(paths.examples / "gcode" / f"{GANTRY}.toml"))}
     used |= {
         parameters_for(len(read_machine(paths.examples / "gcode" / f"{name}.toml").motors))
         for name in PROGRAMS.values()
@@ -148,6 +153,6 @@ def demo() -> bool:
     print(
         f"{folder}/NAME/ has for each move a zoomable report.html, motion.png, and its steps in pulses.csv;"
     )
-    print(f"for G-code path.png: {', '.join(PROGRAMS)}")
+    print(f"for G-code path.png: {', '.join(PROGRAMS)}; {GANTRY}: motion.png")
     print(f"open: {folder}/demo.png")
     return all(summary["ok"] for summary in summaries.values())
