@@ -26,9 +26,9 @@
 
 /* What the image has not, behind the name of the chip. */
 #if defined PASSO_LINEAR_PATHS
-#define LEFT_OUT ": no jerk, no axes A B C, no console"
+#define LEFT_OUT ": no jerk, no axes A B C, no tools, no console"
 #elif defined PASSO_BOTH
-#define LEFT_OUT ""
+#define LEFT_OUT ": no tools"
 #else
 #define LEFT_OUT ": no console"
 #endif
