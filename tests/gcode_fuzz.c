@@ -41,7 +41,9 @@ static size_t any_line(char *text)
 	static const char *const COMMANDS[] = {"G0", "G1", "G2", "G3", "G4P.1", "G10L2P1", "G10L20P0", "G17",
 	    "G18", "G19", "G20", "G21", "G28", "G28.1", "G30", "G30.1", "G38.2", "G40", "G43.1", "G49", "G53",
 	    "G54", "G59", "G61", "G80", "G90", "G91", "G91.1", "G92", "G92.1", "G93", "G94", "M0", "M2", "M3",
-	    "M5", "M8", "M30", "G", "M", "G38.9", "(", ")", ";", "/", "%"};
+	    "M5", "M8", "M30", "M6", "M61Q3", "G43", "G43H2", "G43.2H1", "G10L1P1", "G10L1P2Z3", "G73", "G81",
+	    "G82", "G83Q1", "G89", "G98", "G99", "G61.1", "G64P.1", "G", "M", "G38.9", "(", ")", ";", "/",
+	    "%"};
 	size_t length = 0;
 
 	if (below(20) == 0) {
@@ -54,7 +56,7 @@ static size_t any_line(char *text)
 			length += (size_t)sprintf(
 			    text + length, "%s", COMMANDS[below(sizeof COMMANDS / sizeof *COMMANDS)]);
 		} else {
-			text[length++] = "XYZABCIJKRFPLSTN"[below(16)];
+			text[length++] = "XYZABCIJKRFPLSTNHQ"[below(18)];
 			length += add_number(text + length);
 		}
 	}
@@ -73,13 +75,17 @@ static void take_all(struct passo_path_planner *path)
 	passo_path_next_motion(path);
 }
 
-static void act(struct passo_path_planner *path, const struct passo_gcode *gcode,
+static void act(struct passo_path_planner *path, struct passo_gcode *gcode,
     const struct passo_gcode_action *action, const char *text)
 {
 	struct passo_path_move move = {.feed = action->feed, .output = action->output};
 
 	if (action->kind == PASSO_GCODE_DWELL)
 		passo_path_dwell(path, action->microseconds);
+	if (action->kind == PASSO_GCODE_CHANGE) {
+		must(action->output == 0, "it turns", text);
+		passo_gcode_load(gcode, action->tool);
+	}
 	if (action->kind != PASSO_GCODE_LINE)
 		return;
 	must(action->feed > 0, "no feed", text);

@@ -16,7 +16,7 @@ enum {
 	AXES = 3,
 	ITEMS = 16,
 	ROUND = 1000, /* microseconds from one poll to the next */
-	PAGE_WORDS = 256,
+	PAGE_WORDS = 512,
 	STEPS_PER_MM = 20,
 };
 

@@ -14,6 +14,7 @@
 
 #include "fuzz.h"
 #include "grbl_bench.h"
+#include "passo_grbl_private.h"
 
 enum {
 	SAID = 1 << 16,
@@ -144,15 +145,17 @@ static const char *const LINES_OF[] = {"G0 X1 Y2", "G1 X-1 F600", "G1 Y3 Z1 F900
     "G28", "G28.1", "$$", "$#", "$G", "$I", "$N", "$N0=G21", "$N1=", "$H", "$X", "$C", "$J=G91 X1 F900",
     "$J=X0 F300", "$RST=$", "$RST=*", "$110=600", "$120=50", "$100=20", "$10=3", "$21=1", "$20=1", "$22=1",
     "$32=1", "$13=1", "$11=0.02", "$130=10", "$P", "$", "$999=1", "$0=-1", "", "(a comment)", "; another",
-    "G1", "X1 X2", "G99", "N5 G1 X1 F100", "%", "/G0 X1", "G20", "G21", "G53 G0 X0", "G93 G1 X1 F60"};
+    "G1", "X1 X2", "G99", "N5 G1 X1 F100", "%", "/G0 X1", "G20", "G21", "G53 G0 X0", "G93 G1 X1 F60", "T1 M6",
+    "T2 M6", "M6", "M61 Q1", "G43 H1", "G43.2 H2", "G49", "G10 L1 P1 Z2", "$TPW", "$TLR", "$342=1",
+    "$394=0.02"};
 static const char REAL_TIME[] = {'?', '?', '?', '!', '~', '~', '~', '\x84', '\x85', '\x90', '\x91', '\x92',
-    '\x93', '\x94', '\x95', '\x96', '\x97', '\x99', '\x9A', '\x9E', '\x9D'};
+    '\x93', '\x94', '\x95', '\x96', '\x97', '\x99', '\x9A', '\x9E', '\x9D', '\xA3', '\xA3'};
 
 /* Waits until there is room, as a sender that counts characters does. */
 static void type(char byte)
 {
 	for (unsigned i = 0; i < PATIENCE; i++) {
-		if ((uint8_t)(bench.grbl.tail - bench.grbl.head - 1u) > 8u)
+		if (passo_grbl_room(&bench.grbl) > 8u)
 			break;
 		poll(1);
 		if (i % 16 == 15)

@@ -30,7 +30,7 @@ SECONDS = 0.5  # until one has become the other
 
 
 IMAGES = [LARGE_IMAGE, BOTH_IMAGE]
-LEFT_OUT = {LARGE_IMAGE: ": no console", BOTH_IMAGE: ""}
+LEFT_OUT = {LARGE_IMAGE: ": no console", BOTH_IMAGE: ": no tools"}
 LINES = {LARGE_IMAGE: 36, BOTH_IMAGE: 40}  # of the look-ahead
 
 with_console = pytest.mark.parametrize("image", [BOTH_IMAGE], ids="_".join, indirect=True)
@@ -100,7 +100,8 @@ def test_small_images_say_what_they_leave_out(speaks_grbl: bool) -> None:
     for size, name in ((None, "STM32F103x8"), (SIZE, "STM32F103xB")):
         machine = Machine(folder / "passo.elf", None, flash_size=size)
         machine.run(0.2)
-        left_out = "no jerk, no axes A B C, no console" if speaks_grbl else "no goto, outputs, encoders"
+        of_grbl = "no jerk, no axes A B C, no tools, no console"
+        left_out = of_grbl if speaks_grbl else "no goto, outputs, encoders"
         assert f"{name}: {left_out}" in machine.output
 
 
@@ -180,6 +181,31 @@ def test_grbl_has_jerk_and_more_axes(board: GrblBoard) -> None:
     assert board.line("$804=1") == "error:3" and board.line("$800=-1") == "error:4"
     board.restart()
     assert "$803=20000.000" in board.line("$$").splitlines()
+
+
+def test_a_tool_change(image: tuple[str, ...], board: GrblBoard) -> None:
+    """With a table that outlasts a reset; the image with the console refuses its words."""
+    if image == BOTH_IMAGE:
+        words = "M6", "M61 Q1", "G43", "G43.2 H1", "H1", "G10 L1 P1 Z1", "$TPW", "$TLR", "$394=1"
+        assert [board.line(word) for word in words] == ["error:20"] * 6 + ["error:3"] * 3
+        return
+    for line in ("G10 L1 P16 Z-2.5", "$394=0.3", "T16 M3"):
+        assert board.line(line) == "ok"
+    board.run(0.4)
+    assert board.line("G10 L1 P17 Z1") == "error:38"
+    board.restart()
+    assert "[T:16,0.000,0.000,-2.500,0.000,0.000]" in board.line("$#").splitlines()
+    for line in ("M3 S500", "G1 X1 F6000", "T16 M6"):
+        assert board.line(line).endswith("ok")
+    board.type("G43\nG1 Z0 F6000\n")
+    board.run(0.2)
+    assert "[MSG:Tool change: T16]" in board.output and board.report()["state"] == "Tool"
+    assert board.events()["outputs"][-1] == 0
+    board.type("~")
+    board.run(0.2)
+    assert board.report()["MPos"].startswith("1.000,0.000,0.000") and board.events()["outputs"][-1] == 1
+    board.run(1)
+    assert board.report()["MPos"].startswith("1.000,0.000,-2.500")
 
 
 JERK = """

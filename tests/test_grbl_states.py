@@ -7,10 +7,11 @@ from typing import Any
 from passo.native import ffi, planner
 from passo.toolchain import paths
 
-STATES = ("Home", "Sleep", "Alarm", "Door", "Hold", "Check", "Jog", "Run", "Idle")
+TOUCH = "Tool, `0xA3`"
+STATES = ("Home", "Sleep", "Alarm", "Door", "Hold", "Tool", TOUCH, "Check", "Jog", "Run", "Idle")
 ACTS = {
     "": "NOTHING", "reset": "RESETS", "alarm 6, reset": "FAILS", "hold": "HOLDS", "door": "OPENS",
-    "cancel": "CANCELS", "cancel, door": "CLOSES", "alarm 7": "STOPS", "resume": "GOES_ON",
+    "known": "ADMITS", "cancel": "CANCELS", "cancel, door": "CLOSES", "alarm 7": "STOPS", "resume": "GOES_ON",
 }  # fmt: skip
 RESULTS = {"taken": 0, "waits": 0xFF, "8": 8, "9": 9}
 
@@ -27,8 +28,11 @@ def states() -> list[tuple[str, Any]]:
     """Names and numbers, in the order in which they apply."""
     c = planner()
     assert len(STATES) == c.PASSO_GRBL_STATES
-    named = [(name, getattr(c, f"PASSO_GRBL_STATE_{name.upper()}")) for name in STATES]
-    assert [ffi().string(c.passo_grbl_state_name(number)).decode() for _, number in named] == list(STATES)
+    names = ["TOUCH" if name == TOUCH else name.upper() for name in STATES]
+    numbers = [getattr(c, f"PASSO_GRBL_STATE_{name}") for name in names]
+    named = list(zip(STATES, numbers, strict=True))
+    told = [ffi().string(c.passo_grbl_state_name(number)).decode() for _, number in named]
+    assert told == ["Tool" if name == TOUCH else name for name in STATES]
     return named
 
 

@@ -30,7 +30,8 @@ static void clear_job(struct passo_gcode *gcode)
 {
 	struct passo_gcode_job *job = &gcode->job;
 
-	job->output = job->dwell = job->offsets = job->via = job->motion = job->pause = job->end = false;
+	job->change = job->output = job->dwell = job->offsets = job->via = job->motion = job->pause =
+	    job->end = false;
 	job->turns = job->drills = false;
 	job->probe = PASSO_GCODE_NONE;
 }
@@ -64,7 +65,7 @@ void passo_gcode_reset(struct passo_gcode *gcode)
 	gcode->tool_length = gcode->feed = gcode->spindle = 0;
 	gcode->tolerance = 0;
 	gcode->line = 0;
-	gcode->tool = 0;
+	gcode->tool = gcode->loaded;
 	clear_job(gcode);
 }
 
@@ -72,6 +73,17 @@ void passo_gcode_set_position(struct passo_gcode *gcode, const int64_t *position
 {
 	passo_gcode_copy(gcode, position, gcode->position);
 	clear_job(gcode);
+}
+
+void passo_gcode_load(struct passo_gcode *gcode, uint8_t tool)
+{
+	gcode->loaded = tool;
+}
+
+void passo_gcode_set_length(struct passo_gcode *gcode, int64_t length)
+{
+	gcode->tool_length = length;
+	gcode->mode[PASSO_GCODE_TOOL_LENGTH] = PASSO_GCODE_G(43, 1);
 }
 
 static void accept_coolant(struct passo_gcode *gcode, passo_gcode_command command)
@@ -84,6 +96,12 @@ static void accept_command(struct passo_gcode *gcode, const struct passo_gcode_c
 {
 	switch (check->block.command[PASSO_GCODE_COMMAND]) {
 	case PASSO_GCODE_G(10, 0):
+#ifndef PASSO_PLAIN_GCODE
+		if (check->entry > 0) {
+			gcode->offsets.tool_length[check->entry - 1] = (int32_t)check->set[2];
+			break;
+		}
+#endif
 		passo_gcode_copy(gcode, check->set, gcode->offsets.system[check->system]);
 		break;
 	case PASSO_GCODE_G(28, 1):
@@ -102,10 +120,21 @@ static void accept_command(struct passo_gcode *gcode, const struct passo_gcode_c
 	default:
 		break;
 	}
-	if (check->block.command[PASSO_GCODE_TOOL_LENGTH] == PASSO_GCODE_G(49, 0))
-		gcode->tool_length = 0;
-	else if (check->block.command[PASSO_GCODE_TOOL_LENGTH] == PASSO_GCODE_G(43, 1))
-		gcode->tool_length = check->set[2];
+}
+
+/* A change is over when passo_gcode_load() says so. */
+static void accept_tool(struct passo_gcode *gcode, const struct passo_gcode_check *check)
+{
+	if (check->block.words & PASSO_GCODE_WORD('T'))
+		gcode->tool = (uint8_t)(check->block.value['T' - 'A'] / PASSO_GCODE_MILLION);
+#ifndef PASSO_PLAIN_GCODE
+	const passo_gcode_command change = check->block.command[PASSO_GCODE_TOOL_CHANGE];
+
+	if (change == PASSO_GCODE_M(61))
+		gcode->tool = gcode->loaded = check->loaded;
+	gcode->job.change = change == PASSO_GCODE_M(6) && check->loaded != gcode->loaded;
+#endif
+	gcode->tool_length = check->tool_length;
 }
 
 static void accept(struct passo_gcode *gcode, const struct passo_gcode_check *check)
@@ -116,8 +145,7 @@ static void accept(struct passo_gcode *gcode, const struct passo_gcode_check *ch
 
 	if (block->words & PASSO_GCODE_WORD('N'))
 		gcode->line = (uint32_t)(block->value['N' - 'A'] / PASSO_GCODE_MILLION);
-	if (block->words & PASSO_GCODE_WORD('T'))
-		gcode->tool = (uint8_t)(block->value['T' - 'A'] / PASSO_GCODE_MILLION);
+	accept_tool(gcode, check);
 	if (block->words & PASSO_GCODE_WORD('S'))
 		gcode->spindle = block->value['S' - 'A'];
 	gcode->feed = check->feed;
@@ -147,7 +175,8 @@ static enum passo_gcode_error begin(
 	check->feed = check->inverse = 0;
 	check->tolerance = 0;
 	check->drill = gcode->drill;
-	check->system = 0;
+	check->tool_length = gcode->tool_length;
+	check->system = check->entry = 0;
 	check->axis_words = check->block.words & passo_gcode_axis_words(gcode->settings.axes);
 	for (unsigned group = 0; group < PASSO_GCODE_MODES; group++) {
 		const passo_gcode_command given = check->block.command[group];

@@ -20,6 +20,11 @@
 
 #define PASSO_GCODE_SYSTEMS 6u /* G54 .. G59 */
 
+/* Tools of the table, T1 and up; T may be any number up to 255. */
+#ifndef PASSO_GCODE_TOOLS
+#define PASSO_GCODE_TOOLS 100u
+#endif
+
 typedef int64_t passo_gcode_position[PASSO_GCODE_AXES_MAX];
 
 struct passo_gcode_settings {
@@ -34,6 +39,9 @@ struct passo_gcode_settings {
 struct passo_gcode_offsets {
 	passo_gcode_position system[PASSO_GCODE_SYSTEMS];
 	passo_gcode_position home[2]; /* G28, G30 */
+#ifndef PASSO_PLAIN_GCODE
+	int32_t tool_length[PASSO_GCODE_TOOLS]; /* of T1 and up: nm */
+#endif
 };
 
 /* The output word of the lines: that of the core with OUTPUTS. */
@@ -47,10 +55,11 @@ enum passo_gcode_kind {
 	PASSO_GCODE_LINE,
 	PASSO_GCODE_PROBE, /* to the target, until the probe triggers; `probe` is 382 .. 385 */
 	PASSO_GCODE_DWELL,
-	PASSO_GCODE_OUTPUT, /* spindle or coolant have changed */
-	PASSO_GCODE_PAUSE,  /* M0: wait for the operator after the preceding lines */
-	PASSO_GCODE_END,    /* M2, M30: of the program */
-	PASSO_GCODE_OFFSETS /* struct passo_gcode_offsets has changed */
+	PASSO_GCODE_OUTPUT,  /* spindle or coolant have changed */
+	PASSO_GCODE_PAUSE,   /* M0: wait for the operator after the preceding lines */
+	PASSO_GCODE_END,     /* M2, M30: of the program */
+	PASSO_GCODE_OFFSETS, /* struct passo_gcode_offsets has changed */
+	PASSO_GCODE_CHANGE   /* M6: a pause with spindle and coolant off, until passo_gcode_load() */
 };
 
 struct passo_gcode_action {
@@ -63,13 +72,14 @@ struct passo_gcode_action {
 	uint32_t output;
 	uint32_t line; /* N; 0: none */
 	passo_gcode_command probe;
+	uint8_t tool; /* to be loaded */
 };
 
 /* Pending actions of a line. */
 struct passo_gcode_job {
-	bool output, dwell, offsets, via, motion, pause, end; /* in this order */
-	bool turns;                                           /* the motion is an arc */
-	bool drills;                                          /* the motion is a cycle */
+	bool change, output, dwell, offsets, via, motion, pause, end; /* in this order */
+	bool turns;                                                   /* the motion is an arc */
+	bool drills;                                                  /* the motion is a cycle */
 	passo_gcode_command probe; /* the motion is a probe; else PASSO_GCODE_NONE */
 	uint64_t microseconds;
 	uint64_t feed;                              /* UQ32.32 mm/s, or PASSO_PATH_RAPID */
@@ -88,13 +98,14 @@ struct passo_gcode {
 	bool flood, mist;
 	passo_gcode_position position;  /* programmed end, machine coordinates */
 	passo_gcode_position shift;     /* G92 */
-	int64_t tool_length;            /* G43.1 */
+	int64_t tool_length;            /* G43, G43.1, G43.2 */
 	struct passo_gcode_drill drill; /* of the cycle in force */
 	uint64_t tolerance;             /* of G61 and G64 */
 	int64_t feed;                   /* nm/min; 0: none yet */
 	int64_t spindle;                /* millionths of rpm */
 	uint32_t line;                  /* N of the last line that had one */
-	uint8_t tool;
+	uint8_t tool;                   /* T: the next one */
+	uint8_t loaded;                 /* the one in the spindle; 0: none */
 	uint8_t spindle_percent; /* override of S: may be set by the caller, for the following actions */
 	struct passo_gcode_job job;
 };
@@ -108,7 +119,7 @@ void passo_gcode_configure(struct passo_gcode *gcode, const struct passo_gcode_s
 /* Changes the stored offsets; only while not busy. */
 void passo_gcode_set_offsets(struct passo_gcode *gcode, const struct passo_gcode_offsets *offsets);
 
-/* Power-up modes; offsets and position stay, G92 and G43.1 are cleared. */
+/* Power-up modes; offsets, position and the loaded tool stay, G92 and tool lengths are cleared. */
 void passo_gcode_reset(struct passo_gcode *gcode);
 
 /* Sets the position after a stop, homing or probing. Drops the rest of the line. */
@@ -123,6 +134,12 @@ enum passo_gcode_error passo_gcode_jog(struct passo_gcode *gcode, const char *te
 /* The next action of the line; false: none left. */
 bool passo_gcode_next(struct passo_gcode *gcode, struct passo_gcode_action *action);
 bool passo_gcode_is_busy(const struct passo_gcode *gcode);
+
+/* A measured length in force, as by G43.1, nm. */
+void passo_gcode_set_length(struct passo_gcode *gcode, int64_t length);
+
+/* The tool is in the spindle. */
+void passo_gcode_load(struct passo_gcode *gcode, uint8_t tool);
 
 /* The output word of the following lines. */
 uint32_t passo_gcode_output(const struct passo_gcode *gcode);

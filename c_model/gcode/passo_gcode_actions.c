@@ -5,6 +5,11 @@
 #include "passo_math.h"
 
 #define POWER_FULL 65535u
+#ifdef PASSO_PLAIN_GCODE
+#define TOOLS false
+#else
+#define TOOLS true
+#endif
 
 uint32_t passo_gcode_output(const struct passo_gcode *gcode)
 {
@@ -45,7 +50,8 @@ bool passo_gcode_is_busy(const struct passo_gcode *gcode)
 {
 	const struct passo_gcode_job *job = &gcode->job;
 
-	return job->output || job->dwell || job->offsets || job->via || job->motion || job->pause || job->end;
+	return (TOOLS && job->change) || job->output || job->dwell || job->offsets || job->via || job->motion
+	    || job->pause || job->end;
 }
 
 /* Takes a part of the job, if it is there. */
@@ -111,7 +117,11 @@ bool passo_gcode_next(struct passo_gcode *gcode, struct passo_gcode_action *acti
 	    .probe = PASSO_GCODE_NONE,
 	    .tolerance = job->drills ? PASSO_PATH_UNMERGED : gcode->tolerance,
 	    .stops = gcode->mode[PASSO_GCODE_PATH] == PASSO_GCODE_G(61, 1)};
-	if (take(&job->output)) {
+	if (TOOLS && take(&job->change)) {
+		action->kind = PASSO_GCODE_CHANGE;
+		action->tool = gcode->tool;
+		action->output = 0;
+	} else if (take(&job->output)) {
 		action->kind = PASSO_GCODE_OUTPUT;
 	} else if (take(&job->dwell)) {
 		action->kind = PASSO_GCODE_DWELL;
@@ -138,8 +148,9 @@ bool passo_gcode_next(struct passo_gcode *gcode, struct passo_gcode_action *acti
 
 int64_t passo_gcode_offset(const struct passo_gcode *gcode, unsigned axis)
 {
-	const struct passo_gcode_check check = {
-	    .gcode = gcode, .mode = {[PASSO_GCODE_SYSTEM] = gcode->mode[PASSO_GCODE_SYSTEM]}};
+	const struct passo_gcode_check check = {.gcode = gcode,
+	    .tool_length = gcode->tool_length,
+	    .mode = {[PASSO_GCODE_SYSTEM] = gcode->mode[PASSO_GCODE_SYSTEM]}};
 
 	return passo_gcode_offset_of(&check, axis);
 }

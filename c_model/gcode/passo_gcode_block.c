@@ -40,6 +40,10 @@ static const struct code G_CODES[] = {
     {384, PASSO_GCODE_MOTION, AXIS_WORDS | TENTHS},
     {385, PASSO_GCODE_MOTION, AXIS_WORDS | TENTHS},
     {400, PASSO_GCODE_CUTTER, 0},
+#ifndef PASSO_PLAIN_GCODE
+    {430, PASSO_GCODE_TOOL_LENGTH, TENTHS},
+    {432, PASSO_GCODE_TOOL_LENGTH, TENTHS},
+#endif
     {431, PASSO_GCODE_TOOL_LENGTH, AXIS_WORDS | TENTHS},
     {490, PASSO_GCODE_TOOL_LENGTH, 0},
     {530, PASSO_GCODE_COMMAND, 0},
@@ -78,6 +82,10 @@ static const struct code M_CODES[] = {
     {30, PASSO_GCODE_SPINDLE, 0},
     {40, PASSO_GCODE_SPINDLE, 0},
     {50, PASSO_GCODE_SPINDLE, 0},
+#ifndef PASSO_PLAIN_GCODE
+    {60, PASSO_GCODE_TOOL_CHANGE, 0},
+    {610, PASSO_GCODE_TOOL_CHANGE, 0},
+#endif
     {70, PASSO_GCODE_COOLANT, 0},
     {80, PASSO_GCODE_COOLANT, 0},
     {90, PASSO_GCODE_COOLANT, 0},
@@ -88,12 +96,18 @@ static const struct code M_CODES[] = {
 
 static const char AXIS_LETTERS[PASSO_GCODE_AXES_MAX + 1u] = "XYZABC";
 /* Those of values that every machine knows. */
-static const uint32_t VALUE_WORDS = PASSO_GCODE_WORD('F') | PASSO_GCODE_WORD('I') | PASSO_GCODE_WORD('J')
-                                  | PASSO_GCODE_WORD('K') | PASSO_GCODE_WORD('L') | PASSO_GCODE_WORD('N')
-                                  | PASSO_GCODE_WORD('P') | PASSO_GCODE_WORD('Q') | PASSO_GCODE_WORD('R')
-                                  | PASSO_GCODE_WORD('S') | PASSO_GCODE_WORD('T');
-static const uint32_t POSITIVE_WORDS = PASSO_GCODE_WORD('F') | PASSO_GCODE_WORD('N') | PASSO_GCODE_WORD('P')
-                                     | PASSO_GCODE_WORD('Q') | PASSO_GCODE_WORD('S') | PASSO_GCODE_WORD('T');
+#ifdef PASSO_PLAIN_GCODE
+#define TOOL_WORDS 0u
+#else
+#define TOOL_WORDS PASSO_GCODE_WORD('H')
+#endif
+static const uint32_t VALUE_WORDS = TOOL_WORDS | PASSO_GCODE_WORD('F') | PASSO_GCODE_WORD('I')
+                                  | PASSO_GCODE_WORD('J') | PASSO_GCODE_WORD('K') | PASSO_GCODE_WORD('L')
+                                  | PASSO_GCODE_WORD('N') | PASSO_GCODE_WORD('P') | PASSO_GCODE_WORD('Q')
+                                  | PASSO_GCODE_WORD('R') | PASSO_GCODE_WORD('S') | PASSO_GCODE_WORD('T');
+static const uint32_t POSITIVE_WORDS = TOOL_WORDS | PASSO_GCODE_WORD('F') | PASSO_GCODE_WORD('N')
+                                     | PASSO_GCODE_WORD('P') | PASSO_GCODE_WORD('Q') | PASSO_GCODE_WORD('S')
+                                     | PASSO_GCODE_WORD('T');
 
 char passo_gcode_axis_letter(unsigned axis)
 {

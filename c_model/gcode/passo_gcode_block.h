@@ -2,6 +2,9 @@
  * The parsed words of a line, before the semantic checks.
  *
  * Numbers are exact in millionths: millimeters become nanometers, seconds microseconds.
+ *
+ * PASSO_PLAIN_GCODE, for the flash of a small controller: no tool change and no tool table; their words are
+ * refused.
  */
 #ifndef PASSO_GCODE_BLOCK_H
 #define PASSO_GCODE_BLOCK_H
@@ -25,7 +28,7 @@ enum passo_gcode_group {
 	PASSO_GCODE_DISTANCE,     /* G90 G91 */
 	PASSO_GCODE_FEED_MODE,    /* G93 G94 */
 	PASSO_GCODE_PATH,         /* G61 G61.1 G64 */
-	PASSO_GCODE_TOOL_LENGTH,  /* G43.1 G49 */
+	PASSO_GCODE_TOOL_LENGTH,  /* G43 G43.1 G43.2 G49 */
 	PASSO_GCODE_CUTTER,       /* G40 */
 	PASSO_GCODE_ARC_DISTANCE, /* G91.1 */
 	PASSO_GCODE_SPINDLE,      /* M3 M4 M5 */
@@ -33,6 +36,7 @@ enum passo_gcode_group {
 	PASSO_GCODE_COMMAND,      /* G4 G10 G28 G28.1 G30 G30.1 G53 G92 G92.1 */
 	PASSO_GCODE_COOLANT,      /* M7 M8 M9 */
 	PASSO_GCODE_PROGRAM,      /* M0 M1 M2 M30 */
+	PASSO_GCODE_TOOL_CHANGE,  /* M6 M61 */
 	PASSO_GCODE_GROUPS
 };
 #define PASSO_GCODE_MODES PASSO_GCODE_COMMAND

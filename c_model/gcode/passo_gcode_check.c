@@ -92,22 +92,80 @@ static enum passo_gcode_error check_feed(struct passo_gcode_check *check)
 	return PASSO_GCODE_OK;
 }
 
+#ifdef PASSO_PLAIN_GCODE
+static enum passo_gcode_error check_change(struct passo_gcode_check *check)
+{
+	(void)check;
+	return PASSO_GCODE_OK;
+}
+
+static enum passo_gcode_error check_table_length(struct passo_gcode_check *check)
+{
+	(void)check;
+	return PASSO_GCODE_OK;
+}
+#else
+/* M6 loads the tool of T; M61 says which one is loaded. */
+static enum passo_gcode_error check_change(struct passo_gcode_check *check)
+{
+	const passo_gcode_command change = check->block.command[PASSO_GCODE_TOOL_CHANGE];
+	const bool selects = (check->block.words & PASSO_GCODE_WORD('T')) != 0;
+
+	check->loaded = check->gcode->loaded;
+	if (change == PASSO_GCODE_M(6))
+		check->loaded = selects ? (uint8_t)whole_of(check, 'T') : check->gcode->tool;
+	if (change != PASSO_GCODE_M(61))
+		return PASSO_GCODE_OK;
+	if (!passo_gcode_take(check, 'Q'))
+		return PASSO_GCODE_NO_VALUE;
+	check->loaded = (uint8_t)whole_of(check, 'Q');
+	return whole_of(check, 'Q') > TOOL_MAX ? PASSO_GCODE_TOOL : PASSO_GCODE_OK;
+}
+
+/* G43: of H, or of the loaded tool; G43.2: adds that of H. Tool 0 has none. */
+static enum passo_gcode_error check_table_length(struct passo_gcode_check *check)
+{
+	const passo_gcode_command command = check->block.command[PASSO_GCODE_TOOL_LENGTH];
+	const bool adds = command == PASSO_GCODE_G(43, 2);
+
+	if (command != PASSO_GCODE_G(43, 0) && !adds)
+		return PASSO_GCODE_OK;
+	const bool given = passo_gcode_take(check, 'H');
+	const int64_t tool = given ? whole_of(check, 'H') : check->loaded;
+	if (adds && !given)
+		return PASSO_GCODE_NO_VALUE;
+	if (tool > (int64_t)PASSO_GCODE_TOOLS)
+		return PASSO_GCODE_TOOL;
+	check->tool_length =
+	    (adds ? check->tool_length : 0) + (tool > 0 ? check->gcode->offsets.tool_length[tool - 1] : 0);
+	return PASSO_GCODE_OK;
+}
+#endif
+
 static enum passo_gcode_error check_tool(struct passo_gcode_check *check)
 {
+	const passo_gcode_command length = check->block.command[PASSO_GCODE_TOOL_LENGTH];
+
 	passo_gcode_take(check, 'S');
 	if (passo_gcode_take(check, 'T') && whole_of(check, 'T') > TOOL_MAX)
 		return PASSO_GCODE_TOOL;
-	if (check->block.command[PASSO_GCODE_TOOL_LENGTH] != PASSO_GCODE_G(43, 1))
-		return PASSO_GCODE_OK;
-	if (check->axis_words != PASSO_GCODE_WORD('Z'))
-		return PASSO_GCODE_TOOL_AXIS;
-	check->set[TOOL_AXIS] = passo_gcode_axis_value(check, TOOL_AXIS);
-	return passo_gcode_in_range(check->set[TOOL_AXIS]) ? PASSO_GCODE_OK : PASSO_GCODE_TARGET;
+	enum passo_gcode_error error = check_change(check);
+	check->tool_length = length == PASSO_GCODE_G(49, 0) ? 0 : check->gcode->tool_length;
+	if (length == PASSO_GCODE_G(43, 1)) {
+		if (check->axis_words != PASSO_GCODE_WORD('Z'))
+			return PASSO_GCODE_TOOL_AXIS;
+		check->tool_length = passo_gcode_axis_value(check, TOOL_AXIS);
+	}
+	if (error == PASSO_GCODE_OK)
+		error = check_table_length(check);
+	if (error == PASSO_GCODE_OK && !passo_gcode_in_range(check->tool_length))
+		error = PASSO_GCODE_TARGET;
+	return error;
 }
 
-static int64_t tool_offset(const struct passo_gcode *gcode, unsigned axis)
+static int64_t tool_offset(const struct passo_gcode_check *check, unsigned axis)
 {
-	return axis == TOOL_AXIS ? gcode->tool_length : 0;
+	return axis == TOOL_AXIS ? check->tool_length : 0;
 }
 
 int64_t passo_gcode_offset_of(const struct passo_gcode_check *check, unsigned axis)
@@ -115,8 +173,23 @@ int64_t passo_gcode_offset_of(const struct passo_gcode_check *check, unsigned ax
 	const struct passo_gcode *gcode = check->gcode;
 	const unsigned system = (unsigned)(check->mode[PASSO_GCODE_SYSTEM] - 540) / 10;
 
-	return gcode->offsets.system[system][axis] + gcode->shift[axis] + tool_offset(gcode, axis);
+	return gcode->offsets.system[system][axis] + gcode->shift[axis] + tool_offset(check, axis);
 }
+
+#ifndef PASSO_PLAIN_GCODE
+/* G10 L1: the length of a tool. */
+static enum passo_gcode_error check_entry(struct passo_gcode_check *check, int64_t tool)
+{
+	if (tool < 1 || tool > (int64_t)PASSO_GCODE_TOOLS)
+		return PASSO_GCODE_TOOL;
+	if (check->axis_words != PASSO_GCODE_WORD('Z'))
+		return PASSO_GCODE_TOOL_AXIS;
+	check->entry = (unsigned)tool;
+	check->set[TOOL_AXIS] = passo_gcode_axis_value(check, TOOL_AXIS);
+	check->job->offsets = true;
+	return check->set[TOOL_AXIS] == (int32_t)check->set[TOOL_AXIS] ? PASSO_GCODE_OK : PASSO_GCODE_TARGET;
+}
+#endif
 
 /* G10 L2: the offsets themselves; L20: such that the position gets the given coordinates. */
 static enum passo_gcode_error check_g10(struct passo_gcode_check *check)
@@ -128,6 +201,10 @@ static enum passo_gcode_error check_g10(struct passo_gcode_check *check)
 	if (!passo_gcode_take(check, 'P') || !passo_gcode_take(check, 'L'))
 		return PASSO_GCODE_NO_VALUE;
 	const int64_t number = whole_of(check, 'P'), kind = whole_of(check, 'L');
+#ifndef PASSO_PLAIN_GCODE
+	if (kind == 1 && !(check->block.words & PASSO_GCODE_WORD('R')))
+		return check_entry(check, number);
+#endif
 	if (number > (int64_t)PASSO_GCODE_SYSTEMS)
 		return PASSO_GCODE_COORDINATES;
 	if ((kind != 2 && kind != 20) || (check->block.words & PASSO_GCODE_WORD('R')))
@@ -135,7 +212,7 @@ static enum passo_gcode_error check_g10(struct passo_gcode_check *check)
 	check->system = (unsigned)(number > 0 ? number - 1 : (check->mode[PASSO_GCODE_SYSTEM] - 540) / 10);
 	for (unsigned axis = 0; axis < gcode->settings.axes; axis++) {
 		const int64_t value = passo_gcode_axis_value(check, axis);
-		const int64_t rest = gcode->position[axis] - gcode->shift[axis] - tool_offset(gcode, axis);
+		const int64_t rest = gcode->position[axis] - gcode->shift[axis] - tool_offset(check, axis);
 
 		check->set[axis] = gcode->offsets.system[check->system][axis];
 		if (passo_gcode_has_axis(check, axis))

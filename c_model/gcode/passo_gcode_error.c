@@ -71,9 +71,11 @@ const char *passo_gcode_error_text(enum passo_gcode_error error)
 	case PASSO_GCODE_UNUSED:
 		return "unused word: no command of the line takes it";
 	case PASSO_GCODE_TOOL_AXIS:
-		return "G43.1 takes only Z";
+		return "tool lengths are those of Z alone";
+	case PASSO_GCODE_TOOL_LENGTH_UNKNOWN:
+		return "no tool length could be measured";
 	case PASSO_GCODE_TOOL:
-		return "tool number above 255";
+		return "tool number above 255, or not in the tool table";
 	}
 	return "unknown error";
 }

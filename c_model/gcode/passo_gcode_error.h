@@ -39,7 +39,8 @@ enum passo_gcode_error {
 	PASSO_GCODE_NO_OFFSETS = 35,
 	PASSO_GCODE_UNUSED = 36,
 	PASSO_GCODE_TOOL_AXIS = 37,
-	PASSO_GCODE_TOOL = 38
+	PASSO_GCODE_TOOL = 38,
+	PASSO_GCODE_TOOL_LENGTH_UNKNOWN = 47 /* as in grblHAL */
 };
 
 /* The message for any value; never null. */

@@ -13,14 +13,17 @@ struct passo_gcode_check {
 	struct passo_gcode_block block;
 	passo_gcode_command mode[PASSO_GCODE_MODES];
 	uint32_t axis_words;
-	uint32_t unused;    /* words not used by a command yet */
-	bool moves;         /* the axis words are those of a motion, given or in force */
-	int64_t feed;       /* nm/min, of G94; 0: none */
-	int64_t inverse;    /* millionths of 1/min, of G93 */
-	uint64_t tolerance; /* UQ32.32 mm, of G61 and G64 */
+	uint32_t unused;     /* words not used by a command yet */
+	bool moves;          /* the axis words are those of a motion, given or in force */
+	int64_t feed;        /* nm/min, of G94; 0: none */
+	int64_t inverse;     /* millionths of 1/min, of G93 */
+	uint64_t tolerance;  /* UQ32.32 mm, of G61 and G64 */
+	int64_t tool_length; /* nm */
+	uint8_t loaded;      /* the tool in the spindle */
 	struct passo_gcode_drill drill;
-	unsigned system;          /* that is set by G10 */
-	passo_gcode_position set; /* by G10, G92; of G43.1 the tool length in place of Z */
+	unsigned system;          /* that is set by G10 L2, L20 */
+	unsigned entry;           /* of the tool table, that is set by G10 L1; 0: none */
+	passo_gcode_position set; /* by G10, G92 */
 };
 
 extern const passo_gcode_command PASSO_GCODE_POWER_UP[PASSO_GCODE_MODES];

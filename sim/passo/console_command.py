@@ -9,6 +9,7 @@ from contextlib import suppress
 from typing import Any
 
 from passo.build import Parameters
+from passo.expand.tools import lengths, read_tools
 from passo.failure import BadInputError
 from passo.grbl import Grbl, pseudo_terminal, serve
 from passo.grbl import talk as talk_grbl
@@ -24,7 +25,7 @@ from passo.terminal import Terminal, talk
 
 def run_console(options: argparse.Namespace) -> None:
     """Talk to standard input and output, or as grbl."""
-    if options.grbl or options.pty or options.machine or options.settings:
+    if options.grbl or options.pty or options.machine or options.settings or options.tools:
         _grbl(options)
         return
     parameters = _parameters(options)
@@ -94,9 +95,10 @@ def _grbl(options: argparse.Namespace) -> None:
         raise BadInputError("--grbl needs --machine MACHINE.toml (docs/gcode.md)")
     machine = read_machine(options.machine)
     settings = SettingsFile(options.settings) if options.settings else None
+    tools = lengths(read_tools(options.tools))
     with machine_at(options.engine, machine) as engine:
         if not options.pty:
-            talk_grbl(sys.stdin, Grbl(engine, machine, write, settings))
+            talk_grbl(sys.stdin, Grbl(engine, machine, write, settings, tools))
             return
         with pseudo_terminal(options.pty) as terminal:
             write(f"{options.pty}: 115200 baud or any other\n")
@@ -105,4 +107,4 @@ def _grbl(options: argparse.Namespace) -> None:
                 with suppress(BlockingIOError):  # nobody reads: lost, as on a wire
                     os.write(terminal, text.encode())
 
-            serve(Grbl(engine, machine, said, settings), terminal)
+            serve(Grbl(engine, machine, said, settings, tools), terminal)

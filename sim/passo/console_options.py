@@ -65,5 +65,8 @@ def add(commands: Any) -> argparse.ArgumentParser:
         metavar="FILE",
         help="with --grbl: store $ settings and offsets here; created if missing",
     )
+    console.add_argument(
+        "--tools", type=Path, metavar="TOOLS.tbl", help="with --grbl: tool table of LinuxCNC, in mm"
+    )
     console.add_argument("--echo", action="store_true", help="echo each line before its answer")
     return console

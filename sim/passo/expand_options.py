@@ -5,7 +5,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-TOOLS = "with G41 and G42: tool table of LinuxCNC, in mm"
+TOOLS = "for G41, G42 and G43: tool table of LinuxCNC, in mm"
 
 
 def add(

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Python binding of the G-code interpreter (c_model/gcode/passo_gcode.h)."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -33,6 +33,14 @@ class GcodeSettings:
         """The `struct passo_gcode_settings`."""
         tolerance = max(1, round(self.arc_tolerance * NANOMETERS))
         return ffi().new("struct passo_gcode_settings *", (self.axes, tolerance, self.spindle_maximum, False))
+
+
+def set_tool_lengths(gcode: Any, lengths: Mapping[int, float]) -> None:
+    """Enter lengths in mm, by the number of the tool, into the table of a `struct passo_gcode`."""
+    table = gcode.offsets.tool_length
+    for tool, length in lengths.items():
+        if 1 <= tool <= len(table):
+            table[tool - 1] = round(length * NANOMETERS)
 
 
 def lines(text: bytes) -> list[bytes]:

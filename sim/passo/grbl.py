@@ -5,13 +5,13 @@ import contextlib
 import os
 import time
 import tty
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path as FilePath
 from typing import Any
 
 from passo.driver import Driver
 from passo.failure import BadInputError, Failure
-from passo.gcode import Gcode
+from passo.gcode import Gcode, set_tool_lengths
 from passo.grbl_setup import SettingsFile, defaults_of, setup_of
 from passo.machine_file import MachineFile
 from passo.native import ffi, planner
@@ -33,8 +33,9 @@ class Grbl:
         machine: MachineFile,
         write: Callable[[str], object],
         settings: SettingsFile | None = None,
+        tools: Mapping[int, float] | None = None,
     ):
-        """Settings and offsets are kept in a file, or not at all."""
+        """Settings and offsets are kept in a file, or not at all; `tools` are lengths in mm."""
         self.engine, self.machine, self._write = engine, machine, write
         driver = Driver(engine, machine.clock_hz, engine.parameters)
         slew = machine.clock_hz // SLEWS_PER_SECOND
@@ -53,6 +54,7 @@ class Grbl:
         pages = settings.c if settings else ffi().NULL
         self._setup = setup_of(machine, engine.parameters, self._defaults, pages)
         self._c.passo_grbl_open(self.c, self.player.c, self._sink, self._setup)
+        set_tool_lengths(self.player.gcode.c, tools or {})
         self._check()
 
     @property

@@ -27,9 +27,10 @@ REPORT_ALL = 3  # $10: MPos and Bf
 INFINITE = math.inf
 FILTER_CLOCKS = 65535  # of the filter of the switches, at most
 ALWAYS_ON = 255  # $1
-PAGE = 1024  # bytes; a page of flash of the STM32F103
+PAGE = 2048  # bytes, as of the STM32F103CB
 PAGES = 2
 WORD = 4
+TOUCH = {"TOUCH_DISTANCE": 30, "TOUCH_FEED": 25, "TOUCH_SEEK": 200, "TOUCH_PULL_OFF": 200}  # $342 to $345
 PROBED = 3  # the probe is at Z
 
 
@@ -74,6 +75,7 @@ def default_settings(machine: MachineFile) -> Any:
         "HOMES_LOW": sum(1 << axis for axis, end in enumerate(ends) if end.home == "low"),
         "LASER": machine.laser,
         "ENABLES_INVERTED": machine.enable_inverted,
+        **TOUCH,
     }
     for name, value in values.items():
         made.value[getattr(c, f"PASSO_GRBL_{name}")] = round(value * MILLION)

@@ -42,7 +42,7 @@ NOT_BUILT = "  no images: --no-build"
 FAILED_BITSTREAM = "  bitstream  NONE: see above"
 SPI_MHZ = (18, 9)  # of the firmware: the fastest that a core can take, which is a quarter of its clock
 SPEED_AT = 110  # first setting of the speeds
-JERK_AT = 800  # first of those that only the large chip has
+LARGE_AT = 342  # first of those that only the large chip has
 NO_SETTING = 0xFF
 REVERSE = 1  # the output that a laser does not have
 OUTPUTS = ("spindle on", "spindle reverse", "flood coolant", "mist coolant")  # bits 0 to 3
@@ -160,7 +160,7 @@ def settings_lines(machine: MachineFile) -> list[str]:
     while (number := c.passo_grbl_setting_number(len(values), axes, whole)) != NO_SETTING:
         values[number] = c.passo_grbl_setting(made, number, axes)[0]
     if machine.chip == SMALL:
-        values = {number: value for number, value in values.items() if number < JERK_AT}
+        values = {number: value for number, value in values.items() if number < LARGE_AT}
     speeds = range(SPEED_AT, SPEED_AT + axes)
     homing = 22  # before soft limits
     order = sorted(values, key=lambda number: (number in speeds, number != homing, number))

@@ -14,9 +14,9 @@ from passo.engine import Engine
 from passo.expand.expander import Options, expand_file, needs_expanding
 from passo.expand.place import Place
 from passo.expand.refusals import explain_text
-from passo.expand.tools import Tool
+from passo.expand.tools import Tool, lengths
 from passo.failure import BadInputError
-from passo.gcode import NANOMETERS, Gcode, GcodeError, has_words, lines
+from passo.gcode import NANOMETERS, Gcode, GcodeError, has_words, lines, set_tool_lengths
 from passo.host_loop import HostLoop
 from passo.machine_file import MachineFile
 from passo.native import planner
@@ -38,6 +38,7 @@ class Part:
     chords: int  # with those of the arcs
     end: tuple[int, ...]  # nm
     unread: int  # lines that say something behind the end of the program
+    tools: dict[int, float]  # lengths in mm
 
 
 @dataclass(frozen=True)
@@ -91,7 +92,8 @@ def read_part(path: Path, machine: MachineFile, tools: dict[int, Tool] | None = 
         text, places = [f"{line.text}\n".encode() for line in expanded], [line.place for line in expanded]
     if not any(map(has_words, text)):
         raise BadInputError(f"{path}: the file has no G-code")
-    gcode, chords = Gcode(machine.gcode), 0
+    gcode, chords, table = Gcode(machine.gcode), 0, lengths(tools or {})
+    set_tool_lengths(gcode.c, table)
     for number, line in enumerate(text, 1):
         place = places[number - 1] if places else Place(path, number)
         try:
@@ -100,13 +102,15 @@ def read_part(path: Path, machine: MachineFile, tools: dict[int, Tool] | None = 
             why = explain_text(error, line.decode("utf-8", "replace"), machine.gcode.axes)
             raise BadInputError(f"{place}: {why}") from None
         for action in gcode.actions():
+            if action.kind == planner().PASSO_GCODE_CHANGE:
+                planner().passo_gcode_load(gcode.c, action.tool)
             if action.kind == planner().PASSO_GCODE_PROBE:
                 raise BadInputError(f"{place}: no probe is fitted")
             if action.kind == planner().PASSO_GCODE_END:
                 unread = sum(map(has_words, text[number:]))
-                return Part(path, text[:number], chords, gcode.position, unread)
+                return Part(path, text[:number], chords, gcode.position, unread, table)
             chords += action.kind == planner().PASSO_GCODE_LINE
-    return Part(path, text, chords, gcode.position, 0)
+    return Part(path, text, chords, gcode.position, 0, table)
 
 
 def _say(text: str) -> None:
@@ -128,6 +132,7 @@ def play_part(
     slew = machine.clock_hz // SLEWS_PER_SECOND
     driver.call("configure_motion", slew, slew, 1 << 16)
     program = Program(driver, machine.settings, machine.gcode, look_ahead)
+    set_tool_lengths(program.c.gcode, part.tools)
     loop = HostLoop(engine, machine.clock_hz // LOOPS_PER_SECOND)
     waiting = iter(part.lines)
     last, quiet = -1, engine.clock

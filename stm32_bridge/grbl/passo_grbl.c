@@ -101,6 +101,10 @@ static enum passo_gcode_error execute(struct passo_grbl *grbl)
 
 static bool is_busy(const struct passo_grbl *grbl)
 {
+#ifndef PASSO_PLAIN_GCODE
+	if (grbl->touch > 0)
+		return true;
+#endif
 	return grbl->homes || !passo_player_has_taken(grbl->player);
 }
 
@@ -178,6 +182,11 @@ static void heed(struct passo_grbl *grbl, enum passo_player_event event, enum pa
 	case PASSO_PLAYER_ENDED:
 		passo_grbl_say(grbl, "[MSG:Pgm End]\r\n");
 		break;
+	case PASSO_PLAYER_TOOL:
+#ifndef PASSO_PLAIN_GCODE
+		passo_grbl_begin_change(grbl);
+#endif
+		break;
 	case PASSO_PLAYER_NOTHING:
 	case PASSO_PLAYER_PAUSED:
 		break;
@@ -207,6 +216,9 @@ void passo_grbl_poll(struct passo_grbl *grbl)
 	const enum passo_error error = passo_player_poll(grbl->player, &event);
 
 	heed(grbl, event, error);
+#ifndef PASSO_PLAIN_GCODE
+	passo_grbl_poll_touch(grbl);
+#endif
 	if (grbl->owes && !is_busy(grbl)) {
 		grbl->owes = false;
 		passo_grbl_answer(grbl, PASSO_GCODE_OK);

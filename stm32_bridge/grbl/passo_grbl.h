@@ -100,6 +100,14 @@ struct passo_grbl {
 	bool stopping, greets; /* soft stop in progress; greeting afterwards */
 	bool driven;           /* drives are enabled */
 	uint32_t moved_at;     /* time of the last motion */
+#ifndef PASSO_PLAIN_GCODE
+	uint8_t touch;                   /* step of `$TPW`; 0: none */
+	bool measured;                   /* there is a reference of tool lengths */
+	volatile bool admits;            /* other lines than those of the program are taken */
+	volatile bool rejoins;           /* those are over: the next byte follows the program's */
+	volatile uint8_t program, typed; /* of the ring: lines of the program, and behind them those others */
+	int64_t reference;               /* nm */
+#endif
 };
 
 /* The player must be open, its path and interpreter with any settings: the stored ones are applied. Prints

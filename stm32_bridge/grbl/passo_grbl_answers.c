@@ -49,10 +49,21 @@ void passo_grbl_report_offsets(struct passo_grbl *grbl)
 	passo_grbl_say_position(grbl, "[G28", gcode->offsets.home[0]);
 	passo_grbl_say_position(grbl, "]\r\n[G30", gcode->offsets.home[1]);
 	passo_grbl_say_position(grbl, "]\r\n[G92", gcode->shift);
-	passo_grbl_say(grbl, "]\r\n[TLO:");
+	passo_grbl_say(grbl, "]\r\n");
+#ifndef PASSO_PLAIN_GCODE
+	passo_grbl_report_tools(grbl);
+#endif
+	passo_grbl_say(grbl, "[TLO:");
 	passo_grbl_say_length(grbl, gcode->tool_length);
 	passo_grbl_say(grbl, "]\r\n");
 	passo_grbl_report_probe(grbl);
+#ifndef PASSO_PLAIN_GCODE
+	if (grbl->measured) {
+		passo_grbl_say(grbl, "[TLR:");
+		passo_grbl_say_length(grbl, grbl->reference);
+		passo_grbl_say(grbl, "]\r\n");
+	}
+#endif
 }
 
 /* Versions of the firmware and of the core; its clock in Hz and its build. */

@@ -210,6 +210,9 @@ static void apply_travel(struct passo_grbl *grbl)
 	    .axis = grbl->path.axis, .limited = passo_grbl_is_on(settings, PASSO_GRBL_SOFT_LIMITS)};
 	for (unsigned axis = 0; axis < grbl->path.machine.axes; axis++)
 		grbl->limits.low[axis] = -settings->axis[PASSO_GRBL_TRAVEL][axis];
+#ifndef PASSO_PLAIN_GCODE
+	grbl->limits.spin_up = (uint32_t)settings->value[PASSO_GRBL_SPIN_UP];
+#endif
 	grbl->player->machine = &grbl->limits;
 }
 

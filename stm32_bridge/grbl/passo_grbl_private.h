@@ -18,6 +18,7 @@ void passo_grbl_report(struct passo_grbl *grbl);
 void passo_grbl_report_modes(struct passo_grbl *grbl);
 void passo_grbl_report_offsets(struct passo_grbl *grbl);
 void passo_grbl_report_probe(struct passo_grbl *grbl);
+void passo_grbl_report_tools(struct passo_grbl *grbl);
 void passo_grbl_report_settings(struct passo_grbl *grbl);
 void passo_grbl_report_starts(struct passo_grbl *grbl);
 void passo_grbl_report_build(struct passo_grbl *grbl);
@@ -30,6 +31,8 @@ enum passo_grbl_state passo_grbl_state(const struct passo_grbl *grbl);
 void passo_grbl_ask_reset(struct passo_grbl *grbl);
 /* Processes the real-time requests. */
 void passo_grbl_obey(struct passo_grbl *grbl);
+/* Bytes that the ring can take. */
+uint8_t passo_grbl_room(const struct passo_grbl *grbl);
 /* The next byte of the lines; false: none. */
 bool passo_grbl_next(struct passo_grbl *grbl, char *byte);
 /* When the buffer is empty: number of lines lost with their ends. */
@@ -102,6 +105,20 @@ enum passo_gcode_error passo_grbl_restore(struct passo_grbl *grbl, const char *t
 /* `$H`; passo_grbl_poll_home() answers it at its end. */
 enum passo_gcode_error passo_grbl_home(struct passo_grbl *grbl);
 void passo_grbl_poll_home(struct passo_grbl *grbl);
+
+#ifndef PASSO_PLAIN_GCODE
+/* M6, at rest. */
+void passo_grbl_begin_change(struct passo_grbl *grbl);
+/* Lines that are received from now on are taken before those of the program. */
+void passo_grbl_admit(struct passo_grbl *grbl);
+/* The lines of the program follow; or a reset drops all. */
+void passo_grbl_end_change(struct passo_grbl *grbl);
+/* `$TLR`: lengths are relative to the last probed position. Error: TOOL_LENGTH_UNKNOWN, there is none. */
+enum passo_gcode_error passo_grbl_set_reference(struct passo_grbl *grbl);
+/* `$TPW`: probes the tool at the present position; passo_grbl_poll_touch() answers it at its end. */
+enum passo_gcode_error passo_grbl_touch(struct passo_grbl *grbl);
+void passo_grbl_poll_touch(struct passo_grbl *grbl);
+#endif
 
 /* A line that begins with `$`. */
 enum passo_gcode_error passo_grbl_system(struct passo_grbl *grbl, const char *text);

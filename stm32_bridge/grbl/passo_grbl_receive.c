@@ -42,6 +42,65 @@ static void change(struct passo_grbl *grbl, uint8_t code)
 		grbl->spindle = changed(grbl->spindle, code - SPINDLE_CODES);
 }
 
+#ifdef PASSO_PLAIN_GCODE
+
+static uint8_t end_of(const struct passo_grbl *grbl)
+{
+	return grbl->head;
+}
+
+uint8_t passo_grbl_room(const struct passo_grbl *grbl)
+{
+	return (uint8_t)(grbl->tail - grbl->head - 1u);
+}
+
+#else
+
+/* Behind the last byte that counts. `head` is written by passo_grbl_receive() alone. */
+static uint8_t end_of(const struct passo_grbl *grbl)
+{
+	return grbl->rejoins ? grbl->typed : grbl->head;
+}
+
+/* Where the next byte goes: that of other lines to where they began, once those before have been taken. */
+static uint8_t next_of(const struct passo_grbl *grbl)
+{
+	return grbl->admits && grbl->tail == grbl->head ? grbl->typed : end_of(grbl);
+}
+
+/* Lines of the program that wait while others are taken keep their place. */
+uint8_t passo_grbl_room(const struct passo_grbl *grbl)
+{
+	const uint8_t first = grbl->admits ? grbl->program : grbl->tail;
+
+	return (uint8_t)(first - next_of(grbl) - 1u);
+}
+
+void passo_grbl_admit(struct passo_grbl *grbl)
+{
+	if (!grbl->admits) {
+		grbl->program = grbl->tail;
+		grbl->typed = end_of(grbl);
+		grbl->tail = grbl->typed;
+		grbl->admits = true;
+	}
+	passo_player_admit(grbl->player);
+}
+
+void passo_grbl_end_change(struct passo_grbl *grbl)
+{
+	if (grbl->admits) {
+		grbl->admits = grbl->begun = false;
+		grbl->rejoins = true;
+		grbl->tail = grbl->program;
+		grbl->late = 0;
+		passo_gcode_line_clear(&grbl->line);
+	}
+	passo_player_go_on(grbl->player);
+}
+
+#endif
+
 static bool ends_line(char byte)
 {
 	return byte == '\n' || byte == '\r';
@@ -49,12 +108,16 @@ static bool ends_line(char byte)
 
 static void keep(struct passo_grbl *grbl, char byte)
 {
-	if (grbl->full || (uint8_t)(grbl->head + 1u) == grbl->tail) {
+	if (grbl->full || passo_grbl_room(grbl) == 0) {
 		grbl->full = true;
 		grbl->lost_part = !ends_line(byte);
 		grbl->lost_lines = (uint16_t)(grbl->lost_lines + ends_line(byte));
 		return;
 	}
+#ifndef PASSO_PLAIN_GCODE
+	if (grbl->admits && grbl->tail == grbl->head)
+		grbl->head = grbl->tail = grbl->typed;
+#endif
 	grbl->received[grbl->head] = byte;
 	grbl->head = (uint8_t)(grbl->head + 1u);
 }
@@ -65,9 +128,18 @@ void passo_grbl_receive(struct passo_grbl *grbl, char byte)
 	    [PASSO_GRBL_ASK_PAUSE] = '!',
 	    [PASSO_GRBL_ASK_OPEN] = 0x84,
 	    [PASSO_GRBL_ASK_RESUME] = '~',
+#ifndef PASSO_PLAIN_GCODE
+	    [PASSO_GRBL_ASK_ADMIT] = 0xA3,
+#endif
 	    [PASSO_GRBL_ASK_REPORT] = '?'};
 	const uint8_t code = (uint8_t)byte;
 
+#ifndef PASSO_PLAIN_GCODE
+	if (grbl->rejoins) {
+		grbl->head = grbl->typed;
+		grbl->rejoins = false;
+	}
+#endif
 	if (byte == CONTROL_X) {
 		passo_grbl_ask_reset(grbl);
 		return;
@@ -88,7 +160,7 @@ void passo_grbl_receive(struct passo_grbl *grbl, char byte)
 
 bool passo_grbl_next(struct passo_grbl *grbl, char *byte)
 {
-	if (grbl->tail == grbl->head)
+	if (grbl->tail == end_of(grbl))
 		return false;
 	*byte = grbl->received[grbl->tail];
 	grbl->tail = (uint8_t)(grbl->tail + 1u);
@@ -100,7 +172,7 @@ bool passo_grbl_next(struct passo_grbl *grbl, char *byte)
 
 unsigned passo_grbl_lost(struct passo_grbl *grbl)
 {
-	if (grbl->tail != grbl->head || !grbl->full)
+	if (grbl->tail != end_of(grbl) || !grbl->full)
 		return 0;
 	grbl->full = false; /* from here on bytes are kept again, and none is lost before the ring is full */
 	const uint16_t lines = (uint16_t)(grbl->lost_lines - grbl->found_lines);
@@ -114,7 +186,10 @@ unsigned passo_grbl_lost(struct passo_grbl *grbl)
 
 void passo_grbl_drop_input(struct passo_grbl *grbl)
 {
-	grbl->tail = grbl->head;
+#ifndef PASSO_PLAIN_GCODE
+	grbl->admits = false;
+#endif
+	grbl->tail = end_of(grbl);
 	passo_grbl_lost(grbl);
 	grbl->late = 0;
 	grbl->begun = false;
@@ -126,6 +201,6 @@ void passo_grbl_drop_jogs(struct passo_grbl *grbl)
 {
 	const uint8_t before = (uint8_t)(grbl->mark - grbl->tail);
 
-	grbl->late = before <= (uint8_t)(grbl->head - grbl->tail) ? before : 0;
+	grbl->late = before <= (uint8_t)(end_of(grbl) - grbl->tail) ? before : 0;
 	grbl->dropped = grbl->begun;
 }

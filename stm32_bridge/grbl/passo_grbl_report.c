@@ -201,7 +201,7 @@ void passo_grbl_report(struct passo_grbl *grbl)
 	report_state(grbl);
 	report_position(grbl, (shown & REPORT_MACHINE) != 0);
 	if (shown & REPORT_BUFFER) {
-		const uint8_t room = (uint8_t)(grbl->tail - grbl->head - 1u);
+		const uint8_t room = passo_grbl_room(grbl);
 
 		passo_grbl_say(grbl, "|Bf:");
 		passo_grbl_say_number(grbl, passo_path_room(player->feed->path));

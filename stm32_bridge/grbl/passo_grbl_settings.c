@@ -36,6 +36,13 @@ static const struct kind KINDS[PASSO_GRBL_SETTINGS] = {
     [PASSO_GRBL_SPINDLE] = {30, true, false, 1000000},
     [PASSO_GRBL_SPINDLE_LEAST] = {31, true, false, 1000000},
     [PASSO_GRBL_LASER] = {32, true, false, 1},
+#ifndef PASSO_PLAIN_GCODE
+    [PASSO_GRBL_TOUCH_DISTANCE] = {342, false, true, 1000},
+    [PASSO_GRBL_TOUCH_FEED] = {343, false, true, 1000000},
+    [PASSO_GRBL_TOUCH_SEEK] = {344, false, true, 1000000},
+    [PASSO_GRBL_TOUCH_PULL_OFF] = {345, false, true, 1000000},
+    [PASSO_GRBL_SPIN_UP] = {394, false, false, 60},
+#endif
 };
 
 static const struct kind AXIS_KINDS[PASSO_GRBL_AXIS_SETTINGS] = {

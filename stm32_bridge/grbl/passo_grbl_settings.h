@@ -34,6 +34,13 @@ enum passo_grbl_setting {
 	PASSO_GRBL_SPINDLE,          /* $30: rpm of full power */
 	PASSO_GRBL_SPINDLE_LEAST,    /* $31: rpm, minimum of a running spindle */
 	PASSO_GRBL_LASER,            /* $32 */
+#ifndef PASSO_PLAIN_GCODE
+	PASSO_GRBL_TOUCH_DISTANCE, /* $342: of $TPW, mm */
+	PASSO_GRBL_TOUCH_FEED,     /* $343: mm/min, as the next two */
+	PASSO_GRBL_TOUCH_SEEK,     /* $344 */
+	PASSO_GRBL_TOUCH_PULL_OFF, /* $345 */
+	PASSO_GRBL_SPIN_UP,        /* $394: s until the spindle is at its speed */
+#endif
 	PASSO_GRBL_SETTINGS
 };
 

@@ -14,6 +14,10 @@ enum passo_grbl_state {
 	PASSO_GRBL_STATE_ALARM,
 	PASSO_GRBL_STATE_DOOR,
 	PASSO_GRBL_STATE_HOLD,
+#ifndef PASSO_PLAIN_GCODE
+	PASSO_GRBL_STATE_TOOL,  /* a tool is being changed: the lines of the program wait */
+	PASSO_GRBL_STATE_TOUCH, /* other ones are taken */
+#endif
 	PASSO_GRBL_STATE_CHECK,
 	PASSO_GRBL_STATE_JOG,
 	PASSO_GRBL_STATE_RUN,
@@ -29,7 +33,7 @@ enum passo_grbl_kind {
 	PASSO_GRBL_KIND_SETTINGS, /* $$ */
 	PASSO_GRBL_KIND_UNLOCK,   /* $X */
 	PASSO_GRBL_KIND_CHECK,    /* $C */
-	PASSO_GRBL_KIND_OTHER,    /* $H, $SLP, $#, $I, $N, $RST=, $n=, and unknown ones */
+	PASSO_GRBL_KIND_OTHER,    /* $H, $SLP, $TPW, $TLR, $#, $I, $N, $RST=, $n=, and unknown ones */
 	PASSO_GRBL_KINDS
 };
 
@@ -44,6 +48,9 @@ enum passo_grbl_request {
 	PASSO_GRBL_ASK_PAUSE,  /* ! */
 	PASSO_GRBL_ASK_OPEN,   /* 0x84 */
 	PASSO_GRBL_ASK_RESUME, /* ~, unless ! or 0x84 are in the batch */
+#ifndef PASSO_PLAIN_GCODE
+	PASSO_GRBL_ASK_ADMIT, /* 0xA3: the sender knows that the tool is to be changed */
+#endif
 	PASSO_GRBL_ASK_REPORT, /* ?, after the overrides */
 	PASSO_GRBL_ASKS
 };
@@ -58,6 +65,9 @@ enum passo_grbl_act {
 	PASSO_GRBL_ACT_CLOSES,  /* cancels, then Door */
 	PASSO_GRBL_ACT_STOPS,   /* alarm 7 */
 	PASSO_GRBL_ACT_GOES_ON,
+#ifndef PASSO_PLAIN_GCODE
+	PASSO_GRBL_ACT_ADMITS, /* lines that follow are not the program's */
+#endif
 	PASSO_GRBL_ACT_REPORTS
 };
 

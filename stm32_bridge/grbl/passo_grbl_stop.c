@@ -15,12 +15,22 @@ enum passo_grbl_state passo_grbl_state(const struct passo_grbl *grbl)
 		return PASSO_GRBL_STATE_ALARM;
 	if (grbl->door)
 		return PASSO_GRBL_STATE_DOOR;
-	if (grbl->held || grbl->player->paused)
+	if (grbl->held)
+		return PASSO_GRBL_STATE_HOLD;
+#ifndef PASSO_PLAIN_GCODE
+	if (grbl->player->changes && (!grbl->admits || grbl->player->paused))
+		return PASSO_GRBL_STATE_TOOL;
+#endif
+	if (grbl->player->paused)
 		return PASSO_GRBL_STATE_HOLD;
 	if (grbl->checks)
 		return PASSO_GRBL_STATE_CHECK;
 	if (grbl->jogs)
 		return PASSO_GRBL_STATE_JOG;
+#ifndef PASSO_PLAIN_GCODE
+	if (grbl->player->changes && passo_grbl_is_idle(grbl))
+		return PASSO_GRBL_STATE_TOUCH;
+#endif
 	return passo_grbl_is_idle(grbl) ? PASSO_GRBL_STATE_IDLE : PASSO_GRBL_STATE_RUN;
 }
 
@@ -71,6 +81,9 @@ void passo_grbl_fail(struct passo_grbl *grbl, enum passo_grbl_alarm alarm, enum 
 	if (grbl->owes)
 		passo_grbl_answer(grbl, error);
 	grbl->owes = false;
+#ifndef PASSO_PLAIN_GCODE
+	grbl->touch = 0;
+#endif
 	passo_grbl_begin_stop(grbl);
 }
 
@@ -82,6 +95,10 @@ static void reset(struct passo_grbl *grbl, bool homed)
 	else if (moves(grbl) && !grbl->stopping)
 		lock(grbl, PASSO_GRBL_ABORTED);
 	grbl->owes = false;
+#ifndef PASSO_PLAIN_GCODE
+	grbl->touch = 0;
+	passo_player_give_up(grbl->player);
+#endif
 	passo_grbl_begin_stop(grbl);
 	grbl->greets = true;
 }
@@ -175,8 +192,13 @@ static void go_on(struct passo_grbl *grbl)
 		grbl->asked[PASSO_GRBL_ASK_RESUME] = true;
 		return;
 	}
+#ifndef PASSO_PLAIN_GCODE
+	if (!grbl->held && !grbl->door)
+		passo_grbl_end_change(grbl);
+	else if (!grbl->player->changes)
+#endif
+		passo_player_go_on(grbl->player);
 	grbl->held = grbl->door = false;
-	passo_player_go_on(grbl->player);
 }
 
 static void act(struct passo_grbl *grbl, enum passo_grbl_act act)
@@ -208,6 +230,11 @@ static void act(struct passo_grbl *grbl, enum passo_grbl_act act)
 	case PASSO_GRBL_ACT_GOES_ON:
 		go_on(grbl);
 		break;
+#ifndef PASSO_PLAIN_GCODE
+	case PASSO_GRBL_ACT_ADMITS:
+		passo_grbl_admit(grbl);
+		break;
+#endif
 	case PASSO_GRBL_ACT_REPORTS:
 		passo_grbl_report(grbl);
 		break;

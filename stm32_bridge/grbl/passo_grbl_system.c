@@ -64,6 +64,12 @@ static enum passo_gcode_error at_rest(struct passo_grbl *grbl, const char *text)
 		passo_grbl_report_build(grbl);
 	else if (strcmp(text, "N") == 0)
 		passo_grbl_report_starts(grbl);
+#ifndef PASSO_PLAIN_GCODE
+	else if (strcmp(text, "TLR") == 0)
+		return passo_grbl_set_reference(grbl);
+	else if (strcmp(text, "TPW") == 0)
+		return passo_grbl_touch(grbl);
+#endif
 	else if (strcmp(text, "H") == 0)
 		return passo_grbl_home(grbl);
 	else if (strcmp(text, "SLP") == 0)

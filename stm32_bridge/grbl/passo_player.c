@@ -6,20 +6,30 @@
 
 #include "passo_driver.h"
 #include "passo_math.h"
+#include "passo_outputs.h"
 #include "passo_player_private.h"
 
 #define ACTIONS_MICROSECONDS 200u
 #define MICROSECONDS_PER_SECOND 1000000u
+#define LEVELS_AT 16u    /* in the output word */
+#ifdef PASSO_PLAIN_GCODE /* nor do outputs change at rest */
+#define TOOLS false
+#else
+#define TOOLS true
+#endif
 
 void passo_player_open(struct passo_player *player, struct passo_gcode *gcode, struct passo_path_feed *feed,
     const struct passo_player_machine *machine)
 {
 	*player = (struct passo_player){.gcode = gcode, .feed = feed, .machine = machine};
+	if (TOOLS)
+		player->levels = feed->passo->output.levels;
 }
 
 bool passo_player_has_taken(const struct passo_player *player)
 {
-	return !player->waits && !player->probes && !passo_gcode_is_busy(player->gcode);
+	return !player->waits && !player->probes && !(TOOLS && (player->spins || player->restores))
+	    && !passo_gcode_is_busy(player->gcode);
 }
 
 bool passo_player_is_ready(const struct passo_player *player)
@@ -34,7 +44,76 @@ bool passo_player_is_idle(const struct passo_player *player)
 
 void passo_player_go_on(struct passo_player *player)
 {
+	if (TOOLS && player->changes) {
+		passo_gcode_load(player->gcode, player->loads);
+		player->restores = true;
+	}
 	player->paused = false;
+	if (TOOLS)
+		player->changes = false;
+}
+
+void passo_player_admit(struct passo_player *player)
+{
+	player->paused = false;
+}
+
+void passo_player_give_up(struct passo_player *player)
+{
+	player->changes = false;
+}
+
+void passo_player_take(struct passo_player *player, const struct passo_gcode_action *action)
+{
+	player->action = *action;
+	player->waits = true;
+}
+
+/* Whether the spindle has to come up to speed for levels. */
+static bool spins_up(const struct passo_player *player, uint8_t levels)
+{
+	const unsigned on = PASSO_GCODE_OUTPUT_SPINDLE >> LEVELS_AT,
+		       reverse = PASSO_GCODE_OUTPUT_REVERSE >> LEVELS_AT;
+
+	return TOOLS && player->machine->spin_up > 0 && (levels & on)
+	    && ((levels ^ player->levels) & (on | reverse));
+}
+
+/* What the program has on; while a tool is changed, nothing. */
+static uint32_t output_of(const struct passo_player *player, uint32_t output)
+{
+	return (TOOLS && player->changes) || !player->feed->passo->has_outputs ? 0u : output;
+}
+
+/* At rest. Not `done`: some pins still wait for their times. */
+static enum passo_error set_output(struct passo_player *player, uint32_t output, bool *done)
+{
+	struct passo *passo = player->feed->passo;
+	const uint8_t levels = (uint8_t)(output_of(player, output) >> LEVELS_AT);
+
+	*done = !TOOLS || !passo->has_outputs || (levels == player->levels && !player->unsure);
+	if (*done)
+		return PASSO_OK;
+	const enum passo_error error = passo_set_levels(passo, levels);
+	*done = error == PASSO_OK;
+	if (*done) {
+		player->spins = spins_up(player, levels);
+		player->spins_at = passo_driver_now(passo);
+		player->levels = levels;
+		player->unsure = false;
+	}
+	return error == PASSO_ERROR_MOVING ? PASSO_OK : error;
+}
+
+/* Time passes unless held. */
+static bool still_spins(struct passo_player *player)
+{
+	const uint32_t now = passo_driver_now(player->feed->passo);
+
+	if (player->held)
+		player->spins_at = now;
+	player->spins = player->spins && now - player->spins_at < player->machine->spin_up;
+	return player->spins;
 }
 
 uint64_t passo_player_magnitude(int64_t value)
@@ -83,7 +162,7 @@ void passo_player_drop(struct passo_player *player)
 static enum passo_error take_line(struct passo_player *player, enum passo_player_event *event)
 {
 	const struct passo_gcode_action *action = &player->action;
-	const uint32_t output = player->feed->passo->has_outputs ? action->output : 0u;
+	const uint32_t output = output_of(player, action->output);
 	struct passo_path_move move = {.feed = action->feed, .output = output};
 
 	if (!passo_player_allows(player, action->target)) {
@@ -99,6 +178,8 @@ static enum passo_error take_line(struct passo_player *player, enum passo_player
 	player->waits = error == PASSO_PLAN_PATH_FULL;
 	if (error == PASSO_PLAN_OK) {
 		player->chords++;
+		if (TOOLS)
+			player->levels = (uint8_t)(output >> LEVELS_AT);
 		if (action->stops)
 			passo_path_dwell(player->feed->path, 0);
 	}
@@ -123,6 +204,10 @@ enum passo_error passo_player_restart(struct passo_player *player)
 	passo_path_feed_open(player->feed, player->feed->passo, player->feed->path);
 	passo_gcode_set_position(player->gcode, position);
 	player->waits = player->probes = player->paused = player->dwells = false;
+	if (TOOLS) {
+		player->restores = player->spins = false;
+		player->unsure = true;
+	}
 	return PASSO_OK;
 }
 
@@ -146,15 +231,34 @@ static enum passo_error take_at_rest(struct passo_player *player, enum passo_pla
 	player->waits = passo_path_feed_is_moving(player->feed);
 	if (player->waits)
 		return PASSO_OK;
-	if (player->action.kind == PASSO_GCODE_PROBE)
+	bool done = false;
+	const enum passo_error error = set_output(player, player->action.output, &done);
+	player->waits = !done;
+	if (!done)
+		return error;
+	switch (player->action.kind) {
+	case PASSO_GCODE_PROBE:
 		return passo_player_begin_probe(player, event);
-	if (player->action.kind == PASSO_GCODE_DWELL)
+	case PASSO_GCODE_DWELL:
 		dwell(player);
-	player->paused = player->action.kind == PASSO_GCODE_PAUSE;
-	if (player->paused)
+		break;
+	case PASSO_GCODE_PAUSE:
+		player->paused = true;
 		*event = PASSO_PLAYER_PAUSED;
-	else if (player->action.kind == PASSO_GCODE_END)
+		break;
+	case PASSO_GCODE_CHANGE:
+		if (!TOOLS)
+			break;
+		player->paused = player->changes = true;
+		player->loads = player->action.tool;
+		*event = PASSO_PLAYER_TOOL;
+		break;
+	case PASSO_GCODE_END:
 		*event = PASSO_PLAYER_ENDED;
+		break;
+	default: /* the outputs alone */
+		break;
+	}
 	return PASSO_OK;
 }
 
@@ -165,6 +269,8 @@ static void check_action(struct passo_player *player, enum passo_player_event *e
 
 	if (kind == PASSO_GCODE_END) {
 		*event = PASSO_PLAYER_ENDED;
+	} else if (TOOLS && kind == PASSO_GCODE_CHANGE) {
+		passo_gcode_load(player->gcode, player->action.tool);
 	} else if ((kind == PASSO_GCODE_LINE || kind == PASSO_GCODE_PROBE)
 	           && !passo_player_allows(player, player->action.target)) {
 		*event = PASSO_PLAYER_TRAVEL;
@@ -192,12 +298,15 @@ static enum passo_error take_action(struct passo_player *player, enum passo_play
 		break;
 	case PASSO_GCODE_PROBE:
 	case PASSO_GCODE_PAUSE:
+	case PASSO_GCODE_CHANGE:
 	case PASSO_GCODE_END:
 		return take_at_rest(player, event);
 	case PASSO_GCODE_OFFSETS:
 		*event = PASSO_PLAYER_OFFSETS;
 		break;
 	case PASSO_GCODE_OUTPUT: /* goes with the lines that follow */
+		if (spins_up(player, (uint8_t)(output_of(player, player->action.output) >> LEVELS_AT)))
+			return take_at_rest(player, event);
 		break;
 	}
 	return PASSO_OK;
@@ -211,6 +320,14 @@ static enum passo_error take_actions(struct passo_player *player, enum passo_pla
 	enum passo_error error = PASSO_OK;
 
 	*event = PASSO_PLAYER_NOTHING;
+	if (TOOLS && player->restores) {
+		bool done = false;
+
+		error = set_output(player, passo_gcode_output(player->gcode), &done);
+		player->restores = !done;
+	}
+	if (TOOLS && (player->restores || still_spins(player)))
+		return error;
 	while (error == PASSO_OK && *event == PASSO_PLAYER_NOTHING && !player->probes && !player->paused
 	       && !passo_path_feed_is_urgent(player->feed)
 	       && passo_driver_now(passo) - began <= ACTIONS_MICROSECONDS) {
@@ -223,11 +340,24 @@ static enum passo_error take_actions(struct passo_player *player, enum passo_pla
 	return error;
 }
 
+/* The path has ended, and nothing else is under way. */
+static enum passo_error mind_output(struct passo_player *player)
+{
+	bool done = false;
+
+	if (!TOOLS || player->checks || !passo_player_has_taken(player)
+	    || passo_path_feed_is_moving(player->feed) || passo_is_moving(player->feed->passo))
+		return PASSO_OK;
+	return set_output(player, passo_gcode_output(player->gcode), &done);
+}
+
 enum passo_error passo_player_poll(struct passo_player *player, enum passo_player_event *event)
 {
 	const bool probed = player->probes;
 	enum passo_error error = take_actions(player, event);
 
+	if (error == PASSO_OK && *event == PASSO_PLAYER_NOTHING)
+		error = mind_output(player);
 	if (error != PASSO_OK || *event != PASSO_PLAYER_NOTHING)
 		return error;
 	error = passo_path_feed_poll(player->feed);

@@ -11,8 +11,8 @@
  * No call blocks.
  *
  * A line is accepted when its actions are done or on the path; a dwell, a probe, a pause and the end of the
- * program wait for the preceding motion to end. Dwells between lines are ramps of the core, unless a sender
- * must be answered when they are over.
+ * program wait for the preceding motion to end. At rest the core's digital outputs are those of the program.
+ * Dwells between lines are ramps of the core, unless a sender must be answered when they are over.
  */
 #ifndef PASSO_PLAYER_H
 #define PASSO_PLAYER_H
@@ -25,6 +25,7 @@ enum passo_player_event {
 	PASSO_PLAYER_NOTHING,
 	PASSO_PLAYER_OFFSETS,   /* struct passo_gcode_offsets must be stored */
 	PASSO_PLAYER_PAUSED,    /* M0: at rest until passo_player_go_on() */
+	PASSO_PLAYER_TOOL,      /* M6: the same, for tool passo_player.loads */
 	PASSO_PLAYER_ENDED,     /* M2, M30: at rest */
 	PASSO_PLAYER_TRAVEL,    /* a target outside the travel; the rest of its line is dropped */
 	PASSO_PLAYER_PROBED,    /* the probe triggered, or was optional: passo_player.touch, touched */
@@ -38,6 +39,7 @@ struct passo_player_machine {
 	const struct passo_path_axis *axis; /* as passed to passo_path_open() */
 	bool limited;                       /* targets must be within low .. high, machine coordinates */
 	passo_gcode_position low, high;
+	uint32_t spin_up; /* us that a motion waits for the spindle; 0: none */
 };
 
 /* Number of recent lines of the path whose numbers are kept. */
@@ -69,6 +71,13 @@ struct passo_player {
 	bool waits;  /* the action has not been accepted yet */
 	bool probes; /* probing in progress */
 	bool paused;
+	bool changes;   /* a tool is being changed: spindle and coolant are off */
+	uint8_t loads;  /* that tool */
+	uint8_t levels; /* of the core after the lines of the path */
+	bool unsure;    /* they may be others */
+	bool restores;  /* they are to be those of the program again */
+	bool spins;     /* the spindle comes up to speed */
+	uint32_t spins_at;
 	bool dwells;
 	uint64_t dwell;     /* remaining microseconds */
 	uint32_t dwells_at; /* time of that value */
@@ -99,7 +108,14 @@ enum passo_error passo_player_poll(struct passo_player *player, enum passo_playe
 /* Whether a target is within the travel of all axes. */
 bool passo_player_allows(const struct passo_player *player, const int64_t *target);
 
+/* After a pause, or when the tool is changed. */
 void passo_player_go_on(struct passo_player *player);
+/* While a tool is being changed: lines are executed, without spindle and coolant. */
+void passo_player_admit(struct passo_player *player);
+/* A reset: the tool is not changed. */
+void passo_player_give_up(struct passo_player *player);
+/* An action that is of no line; when ready. */
+void passo_player_take(struct passo_player *player, const struct passo_gcode_action *action);
 
 /* Of the line that is moving; false: none is, or its number is no longer kept. */
 bool passo_player_moving_line(const struct passo_player *player, struct passo_player_line *line);

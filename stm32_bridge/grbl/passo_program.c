@@ -50,7 +50,7 @@ enum passo_error passo_program_poll(struct passo_program *program)
 	if (program->ends && passo_player_is_ready(&program->player))
 		passo_path_end(&program->path);
 	const enum passo_error error = passo_player_poll(&program->player, &event);
-	if (event == PASSO_PLAYER_PAUSED)
+	if (event == PASSO_PLAYER_PAUSED || event == PASSO_PLAYER_TOOL)
 		passo_player_go_on(&program->player);
 	return error;
 }

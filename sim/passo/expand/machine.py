@@ -11,8 +11,8 @@ from functools import cache
 
 from passo.expand.block import Word
 from passo.expand.place import LineError
-from passo.expand.tools import Tool
-from passo.gcode import AXIS_LETTERS, NANOMETERS, Gcode, GcodeSettings
+from passo.expand.tools import Tool, lengths
+from passo.gcode import AXIS_LETTERS, NANOMETERS, Gcode, GcodeSettings, set_tool_lengths
 from passo.native import planner
 
 INCH = 25.4
@@ -64,6 +64,7 @@ class Machine:
         """With `at_zero` the machine is known: at 0, without offsets."""
         self.tools, self.at_zero = tools, at_zero
         self.gcode = Gcode(settings)
+        set_tool_lengths(self.gcode.c, lengths(tools))
         self.compensation: int = 400
         self.tool: int | None = 0 if at_zero else None
         axes = range(settings.axes)
@@ -255,7 +256,9 @@ class Machine:
         if codes & {431, 430, 432, 490}:
             if self.axes > 2:
                 self._position[2] &= self._length
-            self._length = bool(codes & {431, 490})
+            tool = round(values["H"]) if "H" in values else self.tool
+            known = not codes & {430, 432} or tool in self.tools or tool == 0
+            self._length = known and (self._length or 432 not in codes)
         if 100 in codes:
             self._learn_offsets(values, given, system)
         elif 920 in codes:

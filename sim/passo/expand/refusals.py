@@ -15,7 +15,6 @@ ADVICE: tuple[tuple[str, range, str, str], ...] = (
     ("G", range(171, 192), "LinuxCNC", "there are no axes U V W"),
     ("G", range(330, 332), "LinuxCNC", "threading needs a spindle in step"),
     ("G", range(410, 423), "NIST", "expand the file: passo expand"),
-    ("G", range(430, 433), "NIST", "write the length: G43.1 Z"),
     ("G", range(500, 515), "NIST, FIDIA", "scale in the CAM program"),
     ("G", range(520, 521), "LinuxCNC, Fanuc", "write G92, or G10 L2"),
     ("G", range(591, 594), "LinuxCNC", "Passo has the systems G54 to G59"),
@@ -23,7 +22,6 @@ ADVICE: tuple[tuple[str, range, str, str], ...] = (
     ("G", range(901, 902), "LinuxCNC", "write I J K as increments"),
     ("G", range(920, 924), "NIST", "G92 and G92.1 are taken"),
     ("G", range(950, 980), "LinuxCNC", "write F in units per minute and S in rpm: G94"),
-    ("M", range(60, 70), "NIST", "pause with M0 and change the tool by hand"),
     ("M", range(190, 200), "LinuxCNC", "the spindle cannot be oriented"),
     ("M", range(480, 540), "NIST, LinuxCNC", "overrides are the sender's: leave it out"),
     ("M", range(600, 610), "NIST", "pause with M0"),
@@ -40,7 +38,6 @@ ADVICE: tuple[tuple[str, range, str, str], ...] = (
 LETTERS = {
     "D": "NIST: a tool's diameter, with G41 or G42",
     "E": "RepRap: for 3D printers",
-    "H": "NIST: a tool's length, with G43",
     "U": "LinuxCNC: an axis beside X",
     "V": "LinuxCNC: an axis beside Y",
     "W": "LinuxCNC: an axis beside Z",

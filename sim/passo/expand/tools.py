@@ -15,6 +15,7 @@ class Tool:
 
     number: int
     diameter: float = 0.0
+    length: float = 0.0
 
 
 def read_tools(path: Path | None) -> dict[int, Tool]:
@@ -33,11 +34,16 @@ def read_tools(path: Path | None) -> dict[int, Tool]:
         except LineError as error:
             raise ExpandError(place, error) from None
         if "T" in words:
-            tool = Tool(round(words["T"]), words.get("D", 0.0))
+            tool = Tool(round(words["T"]), words.get("D", 0.0), words.get("Z", 0.0))
             tools[tool.number] = tool
         elif words:
             raise ExpandError(place, "a tool needs its number: T")
     return tools
+
+
+def lengths(tools: dict[int, Tool]) -> dict[int, float]:
+    """Those of the tools, in mm."""
+    return {number: tool.length for number, tool in tools.items()}
 
 
 class _NoParameters:

@@ -16,7 +16,7 @@
 #elif defined PASSO_WITHOUT_ROUNDING
 #define LOOK_AHEAD 40u
 #else
-#define LOOK_AHEAD 36u
+#define LOOK_AHEAD 34u
 #endif
 #define SLEWS_PER_SECOND 20u /* of hold and stop, from full speed */
 #define DRAIN_VELOCITY 65536u
@@ -26,9 +26,9 @@
 
 /* What the image has not, behind the name of the chip. */
 #if defined PASSO_LINEAR_PATHS
-#define LEFT_OUT ": no jerk, no axes A B C, no console"
+#define LEFT_OUT ": no jerk, no axes A B C, no tools, no console"
 #elif defined PASSO_BOTH
-#define LEFT_OUT ""
+#define LEFT_OUT ": no tools"
 #else
 #define LEFT_OUT ": no console"
 #endif

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: MIT
+"""Tool change and tool lengths in the interpreter."""
+
+import pytest
+from passo.gcode import Gcode, GcodeError, GcodeSettings
+from passo.native import planner
+
+from tests.test_gcode import run
+
+TABLE = "G10 L1 P1 Z10", "G10 L1 P2 Z-2.5", "G20 G10 L1 P100 Z1", "G21"
+
+
+@pytest.fixture
+def gcode() -> Gcode:
+    """With a tool table."""
+    made = Gcode(GcodeSettings(axes=3))
+    for line in TABLE:
+        run(made, line)
+    return made
+
+
+def kinds(gcode: Gcode, line: str) -> list[tuple[int, int]]:
+    """Kind and output of the actions of a line; a tool to be changed is loaded."""
+    gcode.execute(line)
+    found = []
+    for action in gcode.actions():
+        found.append((action.kind, action.output >> 16))
+        if action.kind == planner().PASSO_GCODE_CHANGE:
+            planner().passo_gcode_load(gcode.c, action.tool)
+    return found
+
+
+def refused(gcode: Gcode, line: str) -> int:
+    with pytest.raises(GcodeError) as error:
+        gcode.execute(line)
+    return error.value.number
+
+
+def test_a_change(gcode: Gcode) -> None:
+    """Before spindle and coolant of its line, with both off; only if another tool is loaded."""
+    c = planner()
+    assert kinds(gcode, "M3 S100 M8") == [(c.PASSO_GCODE_OUTPUT, 5)]
+    assert kinds(gcode, "T3") == [] and gcode.c.loaded == 0
+    assert kinds(gcode, "M6 M4 M9 G0 X1") == [
+        (c.PASSO_GCODE_CHANGE, 0), (c.PASSO_GCODE_OUTPUT, 3), (c.PASSO_GCODE_LINE, 3),
+    ]  # fmt: skip
+    assert gcode.c.loaded == 3 and kinds(gcode, "T3 M6") == []
+    assert kinds(gcode, "T0 M6") == [(c.PASSO_GCODE_CHANGE, 0)] and gcode.c.loaded == 0
+
+
+def test_m61_says_which_one_is_loaded(gcode: Gcode) -> None:
+    assert kinds(gcode, "M61 Q7") == [] and (gcode.c.loaded, gcode.c.tool) == (7, 7)
+    assert kinds(gcode, "T7 M6") == []
+    assert refused(gcode, "M61") == 28 and refused(gcode, "M61 Q256") == 38
+    assert refused(gcode, "M6 M61 Q1") == 21 and refused(gcode, "M61 Q-1") == 4
+    planner().passo_gcode_reset(gcode.c)
+    assert (gcode.c.loaded, gcode.c.tool) == (7, 7)
+
+
+@pytest.mark.parametrize(
+    ("lines", "length"),
+    [
+        (["G43 H1"], 10), (["T2 M6", "G43"], -2.5), (["T1 M6 G43"], 10), (["G43"], 0), (["G43 H0"], 0),
+        (["G43 H100"], 25.4), (["G43.2 H1"], 10), (["G43 H1", "G43.2 H2"], 7.5), (["G43 H1", "G49"], 0),
+        (["M61 Q2 G43"], -2.5), (["G43 H1", "G43 H2"], -2.5), (["G43.1 Z3", "G43.2 H1"], 13), (["G43 H3"], 0),
+        (["G43 H1", "G10 L1 P1 Z5"], 10), (["G91", "G43 H1"], 10),
+    ],
+)  # fmt: skip
+def test_lengths(gcode: Gcode, lines: list[str], length: float) -> None:
+    """They hold in the line that gives them, whatever its motion, and move nothing."""
+    for line in lines:
+        kinds(gcode, line)
+    assert gcode.c.tool_length == round(length * 1e6) and gcode.position == (0, 0, 0)
+    kinds(gcode, "G90 G0 Z1")
+    assert gcode.position[2] == round(1e6 * (1 + length))
+
+
+def test_a_length_and_a_motion_in_one_line(gcode: Gcode) -> None:
+    kinds(gcode, "G0 G43 H1 X2 Z5")
+    assert gcode.position == (2_000_000, 0, 15_000_000)
+    kinds(gcode, "G49 G0")
+    kinds(gcode, "Z5")
+    assert gcode.position[2] == 5_000_000
+
+
+@pytest.mark.parametrize(
+    ("line", "number"),
+    [
+        ("H1", 36), ("G43 H101", 38), ("G43 H-1", 4), ("G43.2", 28), ("G43 G49", 21), ("G10 L1 P0 Z1", 38),
+        ("G10 L1 P101 Z1", 38), ("G10 L1 P1 X1", 37), ("G10 L1 P1 X1 Z1", 37), ("G10 L1 P1", 26),
+        ("G10 L1 Z1", 28), ("G10 L1 P1 Z1 R2", 20), ("G10 L1 P1 Z3000", 33), ("G49 H1", 36),
+        ("G43.1 H1 Z1", 36), ("G43.3", 20), ("M6.1", 23), ("T256 M6", 38),
+    ],
+)  # fmt: skip
+def test_errors_change_nothing(gcode: Gcode, line: str, number: int) -> None:
+    before = list(gcode.c.offsets.tool_length)
+    assert refused(gcode, line) == number
+    assert list(gcode.c.offsets.tool_length) == before and gcode.c.tool_length == 0 and gcode.c.tool == 0

@@ -1,0 +1,233 @@
+# SPDX-License-Identifier: MIT
+"""Tool change, tool lengths by the probe, and outputs at rest, at the pins of the C model."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from passo.grbl_setup import SettingsFile, machine_at
+from passo.machine_file import MachineFile, read_machine
+
+from tests.helpers.grbl_console import GrblConsole
+from tests.helpers.grbl_machine import MACHINE
+
+ADMIT, SPINDLE, FLOOD = b"\xa3", 1, 4
+CHANGE = "[MSG:Tool change: T5]"
+
+
+@pytest.fixture(scope="module")
+def machine(tmp_path_factory: pytest.TempPathFactory) -> MachineFile:
+    path = tmp_path_factory.mktemp("tools") / "machine.toml"
+    path.write_text(MACHINE)
+    return read_machine(path)
+
+
+@pytest.fixture
+def session(machine: MachineFile) -> Iterator[GrblConsole]:
+    """Unlocked, at its start; Z touches 50 mm below, whatever its travel."""
+    with machine_at("model", machine) as engine:
+        drain, engine.levels = engine.drain, 0
+
+        def watched() -> np.ndarray:
+            events = drain()
+            engine.levels = int(events["outputs"][-1]) if len(events) else engine.levels
+            return events
+
+        engine.drain = watched
+        made = GrblConsole(engine, machine)
+        made.line("$X")
+        yield made
+
+
+def levels(session: GrblConsole) -> int:
+    """Of the digital outputs."""
+    return session.engine.levels
+
+
+def test_outputs_at_rest(session: GrblConsole) -> None:
+    """They change immediately; with the last line of a motion if it is under way; a reset ends them."""
+    session.line("M3 S500 M8")
+    session.run(0.01)
+    assert levels(session) == SPINDLE | FLOOD
+    session.line("G1 X-5 F6000")
+    session.line("M5")
+    assert levels(session) & SPINDLE
+    session.rest()
+    session.run(0.01)
+    assert levels(session) == FLOOD
+    session.line("M3")
+    session.run(0.01)
+    session.send(b"\x18", 0.1)
+    assert levels(session) == 0
+
+
+def test_a_dwell_has_the_spindle(session: GrblConsole) -> None:
+    """`M3`, `G4`, a line: it turns before the dwell."""
+    session.send(b"M3 S500\nG4 P0.5\nG1 X-5 F6000\n", 0.1)
+    assert levels(session) == SPINDLE and session.status()["MPos"].startswith("0.000")
+
+
+def test_a_change(session: GrblConsole) -> None:
+    """At rest, spindle and coolant off; lines wait; `~` ends it, and motion waits for the spindle."""
+    assert session.line("$394=0.5") == "ok"
+    session.send(b"M3 S500 M8\nG1 X-5 F6000\nT5 M6\nG1 X-10\n", 2)
+    assert levels(session) == 0 and session.log.count(CHANGE) == 1
+    assert session.status()["state"] == "Tool" and session.fields("MPos")[0] == -5
+    assert session.answers[-3:] == ["ok"] * 3 and session.grbl.player.gcode.c.loaded == 0
+    session.send(b"~", 0.2)
+    assert levels(session) == SPINDLE | FLOOD and session.fields("MPos")[0] == -5
+    session.run(0.4)
+    assert session.fields("MPos")[0] < -5
+    session.finish()
+    assert session.fields("MPos")[0] == -10 and session.grbl.player.gcode.c.loaded == 5
+    assert session.line("M6") == "ok" and session.status()["state"] == "Idle"
+
+
+def test_the_spindle_comes_up_to_speed(session: GrblConsole) -> None:
+    """After each M3, and after a reversal; not after another speed or coolant."""
+    session.line("$394=0.5")
+    for line, seconds in (("M3 S500", 0.5), ("S600", 0), ("M8", 0), ("M4", 0.5), ("M5", 0), ("M3", 0.5)):
+        began = session.engine.clock
+        assert session.line(line) == "ok"
+        took = (session.engine.clock - began) / session.grbl.machine.clock_hz
+        assert seconds <= took < seconds + 0.02, line
+    session.send(b"M5\nG1 X-2 F600\nM3 X-3\n", 0.1)
+    assert levels(session) == FLOOD and session.fields("MPos")[0] > -2
+    session.run(0.3)
+    assert levels(session) == SPINDLE | FLOOD and session.fields("MPos")[0] == -2
+    session.run(0.5)
+    assert session.fields("MPos")[0] < -2
+
+
+def test_hold_and_door(session: GrblConsole) -> None:
+    """`!` does nothing in a change; a door is closed by one `~`, the change ended by the next."""
+    session.send(b"T5 M6\nG1 X-1 F6000\n", 0.1)
+    session.send(b"!", 0.1)
+    assert session.status()["state"] == "Tool"
+    session.send(b"\x84", 0.1)
+    assert session.status()["state"] == "Door:0"
+    session.send(b"~", 0.1)
+    assert session.status()["state"] == "Tool" and session.fields("MPos")[0] == 0
+    session.send(b"~", 1)
+    assert session.fields("MPos")[0] == -1
+
+
+def test_reset_and_a_second_connection(session: GrblConsole) -> None:
+    """The former tool stays, the lines that wait are dropped."""
+    session.line("M61 Q3")
+    session.send(b"T5 M6\nG1 X-1 F6000\n", 0.1)
+    said = session.send(b"\x18", 0.5)
+    assert "Grbl 1.1h" in said and session.status()["state"] in ("Idle", "Alarm")
+    session.line("$X")
+    assert session.grbl.player.gcode.c.loaded == 3 and session.fields("MPos")[0] == 0
+    session.send(b"T5 M6\n", 0.1)
+    session.send(ADMIT + b"G4 P9\n", 0.1)
+    session.send(b"\x18", 0.5)
+    session.line("$X")
+    assert session.line("G1 X-1 F6000") == "ok"
+    session.finish()
+    assert session.fields("MPos")[0] == -1
+
+
+def test_an_alarm_in_a_change(session: GrblConsole) -> None:
+    """The lines that wait are refused; `$X` leads back to the change."""
+    session.send(b"M61 Q3\nT5 M6\nG1 X-1 F6000\n", 0.1)
+    session.send(ADMIT, 0.01)
+    session.send(b"G38.2 Z1 F600\n", 3)
+    assert "ALARM:5" in session.log and session.status()["state"] == "Alarm"
+    session.send(b"$X\n", 0.1)
+    assert session.status()["state"] == "Tool"
+    z = session.fields("MPos")[2]
+    session.send(b"~", 1)
+    assert session.fields("MPos")[:3] == [-1, 0, z] and session.grbl.player.gcode.c.loaded == 5
+
+
+def test_what_is_typed_meanwhile(session: GrblConsole) -> None:
+    """Jogs, modes, probes and lines without number; the program continues behind M6 with its own lines."""
+    session.line("M3 S500")
+    session.send(b"T5 M6\nG1 X-1 F6000\nG1 X-2\n", 0.1)
+    answers = len(session.answers)
+    session.send(ADMIT, 0.01)
+    for number in range(24):  # more than the buffer holds
+        session.send(b"$J=G91 Y%d F6000\n" % (1 if number % 2 else -1), 0.1)
+    session.send(b"M8\nG91 G1 Y-3 F6000\nG90\n", 1)
+    assert session.status()["state"] == "Tool" and levels(session) == 0
+    assert session.answers[answers:] == ["ok"] * 27
+    assert session.fields("MPos") == [0, -3, 0]
+    session.send(b"G1 X5", 0.01)  # without an end
+    session.send(b"~", 0.01)
+    session.send(b"G1 Y-4\n", 2)
+    session.finish()
+    assert session.fields("MPos") == [-2, -4, 0] and levels(session) == SPINDLE | FLOOD
+
+
+def test_one_change_after_the_other(session: GrblConsole) -> None:
+    """What was typed in the first one is not in the way of the program that waits in the second one."""
+    session.send(b"T5 M6\nG1 X-1 F6000\nT6 M6\nG1 X-2\n", 0.1)
+    for y in (-3, -6):
+        session.send(ADMIT, 0.01)
+        session.send(b"$J=G91 Y-3 F6000\n", 0.3)
+        assert session.fields("MPos")[1] == y
+        session.send(b"~", 0.3)
+    assert session.fields("MPos") == [-2, -6, 0] and session.grbl.player.gcode.c.loaded == 6
+
+
+def test_a_jog_is_cancelled_meanwhile(session: GrblConsole) -> None:
+    session.send(b"T5 M6\nG1 X-1 F6000\n", 0.1)
+    session.send(ADMIT, 0.01)
+    session.send(b"$J=G91 Y-100 F1000\n", 0.2)
+    assert session.status()["state"] == "Jog"
+    session.send(b"\x85", 0.5)
+    assert session.status()["state"] == "Tool" and -10 < session.fields("MPos")[1] < 0
+    session.send(b"~", 1)
+    assert session.fields("MPos")[0] == -1
+
+
+def test_lengths_by_the_probe(session: GrblConsole) -> None:
+    """The first tool is the reference; another one has the difference, whatever the probe's first speed."""
+    assert session.line("$TLR") == "error:47"
+    session.line("G0 Z-40")
+    session.rest()
+    assert session.line("$TPW").endswith("ok") and session.line("$TLR") == "ok"
+    touched = session.fields("MPos")[2] - 4
+    assert f"[TLR:{touched:.3f}]" in session.line("$#") and "[TLO:0.000]" in session.line("$#")
+    session.grbl.c.reference -= 3_500_000  # as if the first tool had been so much shorter
+    assert session.line("$TPW").endswith("ok")
+    assert "[TLO:3.500]" in session.line("$#") and abs(session.fields("WCO")[2] - 3.5) < 1e-9
+    session.line("G0 Z0")
+    session.rest()
+    assert session.fields("MPos")[2] == 3.5
+
+
+def test_a_probe_that_fails(session: GrblConsole) -> None:
+    """No contact within the distance: an error, no alarm, the length stays."""
+    session.line("$342=5")
+    session.line("G43.1 Z2")
+    said = session.line("$TPW")
+    assert said.endswith("[MSG:Probe failed, try again]\nerror:47")
+    assert session.status()["state"] == "Idle" and "[TLO:2.000]" in session.line("$#")
+    assert session.fields("MPos")[2] == -5
+
+
+def test_lengths_are_kept(machine: MachineFile, tmp_path: Path) -> None:
+    """In the file of settings; a tool table of the command line is entered into it."""
+    kept, given = "[T:5,0.000,0.000,30.000,0.000]", "[T:1,0.000,0.000,2.500,0.000]"
+    for tools, expected in (({}, []), ({}, [kept]), ({1: 2.5}, [given, kept])):
+        with machine_at("model", machine) as engine:
+            session = GrblConsole(engine, machine, SettingsFile(tmp_path / "settings"), tools)
+            session.line("$X")
+            listed = [line for line in session.line("$#").splitlines() if line.startswith("[T:")]
+            assert listed == expected
+            assert session.line("G10 L1 P5 Z30") == "ok"
+            session.rest()
+
+
+def test_check_mode(session: GrblConsole) -> None:
+    """A change takes no time, and leaves no trace."""
+    session.line("$C")
+    for line in ("G10 L1 P5 Z3", "T5 M6", "G43", "M3 S100", "G0 X-1"):
+        assert session.line(line) == "ok"
+    session.line("$C")
+    session.run(0.3)
+    assert levels(session) == 0 and "[T:" not in session.line("$#")
