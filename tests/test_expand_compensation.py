@@ -216,7 +216,7 @@ def test_tool_table(tmp_path: Path) -> None:
     """LinuxCNC's format; a wrong line is named."""
     path = tmp_path / "tool.tbl"
     path.write_text(";comment\nT1 P2 Z1.5 D6.35 ;end mill\nT20 P3\n")
-    assert read_tools(path) == {1: Tool(1, 6.35), 20: Tool(20)}
+    assert read_tools(path) == {1: Tool(1, 6.35, 1.5), 20: Tool(20)}
     path.write_text("T1 P1\nD5\n")
     with pytest.raises(BadInputError, match=r"tool\.tbl:2: a tool needs its number: T"):
         read_tools(path)

@@ -42,7 +42,7 @@ Y2
 G2 X0 Y0 R2
 M2""".splitlines()
 LONG = "G1 X40 F3000"
-RESET = "\r\n[MSG:Reset by power]\r\n[MSG:STM32F103x8: no jerk, no axes A B C, no console]\r\n"
+RESET = "\r\n[MSG:Reset by power]\r\n[MSG:STM32F103x8: no jerk, no axes A B C, no tools, no console]\r\n"
 
 
 @pytest.fixture(scope="module")

@@ -54,6 +54,7 @@ bool passo_path_has_motors(const struct passo_path_settings *settings)
 	}
 	return rows <= PASSO_PATH_AXES_MAX;
 }
+
 uint64_t passo_path_mixed_acceleration(const struct passo_path_planner *path, uint64_t acceleration)
 {
 	const uint32_t hz = path->machine.clock_hz;

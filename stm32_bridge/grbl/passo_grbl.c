@@ -216,9 +216,7 @@ void passo_grbl_poll(struct passo_grbl *grbl)
 	const enum passo_error error = passo_player_poll(grbl->player, &event);
 
 	heed(grbl, event, error);
-#ifndef PASSO_PLAIN_GCODE
 	passo_grbl_poll_touch(grbl);
-#endif
 	if (grbl->owes && !is_busy(grbl)) {
 		grbl->owes = false;
 		passo_grbl_answer(grbl, PASSO_GCODE_OK);

@@ -118,6 +118,11 @@ enum passo_gcode_error passo_grbl_set_reference(struct passo_grbl *grbl);
 /* `$TPW`: probes the tool at the present position; passo_grbl_poll_touch() answers it at its end. */
 enum passo_gcode_error passo_grbl_touch(struct passo_grbl *grbl);
 void passo_grbl_poll_touch(struct passo_grbl *grbl);
+#else
+static inline void passo_grbl_poll_touch(struct passo_grbl *grbl)
+{
+	(void)grbl;
+}
 #endif
 
 /* A line that begins with `$`. */

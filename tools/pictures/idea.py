@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The idea of the core: a move that the C model has made."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch
-from passo.engine import model_engine
+from passo.build import model_library
+from passo.engine import Engine
+from passo.link import GAP
 from passo.move_file import parse_moves
 from passo.plan import plan_file
 from passo.plot_panels import COLORS, INK
@@ -40,21 +43,25 @@ class Idea:
         return [self.frames, [self.run.steps(axis)[0].tolist() for axis in range(3)]]
 
 
+class Watched(Engine):
+    """Keeps the words of all frames."""
+
+    def __init__(self, *arguments: Any):
+        super().__init__(*arguments)
+        self.frames: list[list[int]] = []
+
+    def transfer(self, mosi: Sequence[int], gap: int = GAP) -> list[int]:
+        """As of an engine."""
+        self.frames.append(list(mosi))
+        return super().transfer(mosi, gap)
+
+
 def play() -> Idea:
     """Play the move on the C model."""
     file = parse_moves(MOVE, Path("move"))
-    parameters = parameters_for(file.axes)
-    frames: list[list[int]] = []
-    with model_engine(parameters, file.clock_hz) as engine:
-        transfer = engine.transfer
-
-        def spied(mosi: list[int], gap: int) -> list[int]:
-            frames.append(list(mosi))
-            return transfer(mosi, gap)
-
-        engine.transfer = spied
-        run = execute(file, plan_file(file, parameters), engine)
-    pushes = [words for words in frames if words[0] >> 28 == 3]  # PUSH
+    with Watched(model_library(), parameters_for(file.axes), file.clock_hz) as engine:
+        run = execute(file, plan_file(file, engine.parameters), engine)
+    pushes = [words for words in engine.frames if words[0] >> 28 == 3]  # PUSH
     return Idea(pushes, run)
 
 
