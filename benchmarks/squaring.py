@@ -15,7 +15,7 @@ import numpy as np
 from passo.build import Parameters
 from passo.console import console
 from passo.driver import Driver
-from passo.engine import model_engine
+from passo.engine import model_engine, moves_of
 from passo.machine import Machine, Switch
 from passo.native import ffi
 from passo.random_cases import log_uniform
@@ -150,10 +150,7 @@ def judged(gantry: Gantry, error: str, driver: Driver, machine: Machine, events:
     """From the steps at the pins."""
     moved, beyond, sign = [], 0, 1 if gantry.high else -1
     for motor, (start, edge) in enumerate(zip(gantry.start, gantry.edges, strict=True)):
-        level = events["step"].astype(np.int64) >> motor & 1
-        rising = np.diff(level, prepend=0) == 1
-        step = np.where(events["dir"].astype(np.int64) >> motor & 1, -1, 1) * rising
-        moved.append(np.append(0, np.cumsum(step)))
+        moved.append(np.append(0, np.cumsum(moves_of(events, motor))))
         place = start + moved[-1]
         began = max(0, sign * (start - edge))
         beyond = max(beyond, int((sign * (place - edge)).max()) - began)

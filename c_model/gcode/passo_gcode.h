@@ -20,6 +20,13 @@
 
 #define PASSO_GCODE_SYSTEMS 6u /* G54 .. G59 */
 
+/* Whether there is a tool change; without it a player changes no outputs at rest either. */
+#ifdef PASSO_PLAIN_GCODE
+#define PASSO_GCODE_HAS_TOOLS false
+#else
+#define PASSO_GCODE_HAS_TOOLS true
+#endif
+
 /* Tools of the table, T1 and up; T may be any number up to 255. */
 #ifndef PASSO_GCODE_TOOLS
 #define PASSO_GCODE_TOOLS 100u

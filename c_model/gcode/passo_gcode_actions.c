@@ -5,11 +5,6 @@
 #include "passo_math.h"
 
 #define POWER_FULL 65535u
-#ifdef PASSO_PLAIN_GCODE
-#define TOOLS false
-#else
-#define TOOLS true
-#endif
 
 uint32_t passo_gcode_output(const struct passo_gcode *gcode)
 {
@@ -50,8 +45,8 @@ bool passo_gcode_is_busy(const struct passo_gcode *gcode)
 {
 	const struct passo_gcode_job *job = &gcode->job;
 
-	return (TOOLS && job->change) || job->output || job->dwell || job->offsets || job->via || job->motion
-	    || job->pause || job->end;
+	return (PASSO_GCODE_HAS_TOOLS && job->change) || job->output || job->dwell || job->offsets || job->via
+	    || job->motion || job->pause || job->end;
 }
 
 /* Takes a part of the job, if it is there. */
@@ -117,7 +112,7 @@ bool passo_gcode_next(struct passo_gcode *gcode, struct passo_gcode_action *acti
 	    .probe = PASSO_GCODE_NONE,
 	    .tolerance = job->drills ? PASSO_PATH_UNMERGED : gcode->tolerance,
 	    .stops = gcode->mode[PASSO_GCODE_PATH] == PASSO_GCODE_G(61, 1)};
-	if (TOOLS && take(&job->change)) {
+	if (PASSO_GCODE_HAS_TOOLS && take(&job->change)) {
 		action->kind = PASSO_GCODE_CHANGE;
 		action->tool = gcode->tool;
 		action->output = 0;

@@ -58,17 +58,16 @@ static uint64_t wanted(const struct passo_path_item *item)
 }
 
 /* Radius of the arc at a corner, UQ.8 substeps. */
-static uint64_t radius_of(const struct passo_path_corner *corner)
+static uint64_t radius_of(const struct passo_path_corner *corner, uint64_t turn)
 {
-	const uint64_t turn = passo_path_larger(passo_isqrt64(corner->turn), 1);
-
-	return passo_path_smaller(passo_mul_div(corner->over, 256, turn), UINT32_MAX);
+	return passo_path_smaller(passo_mul_div(corner->over, 256, passo_path_larger(turn, 1)), UINT32_MAX);
 }
 
 /* Of the weakest axis that turns; one with a small part of the turn is stronger. */
-static uint64_t jerk_of(const struct passo_path_planner *path, const struct passo_path_corner *corner)
+static uint64_t jerk_of(
+    const struct passo_path_planner *path, const struct passo_path_corner *corner, uint64_t turn)
 {
-	const uint64_t part = passo_isqrt64(corner->turn) / SMALL;
+	const uint64_t part = turn / SMALL;
 	uint64_t jerk = PASSO_PATH_SQUARE_MAX;
 
 	for (uint32_t axis = 0; axis < passo_path_rows(path); axis++) {
@@ -171,12 +170,13 @@ uint64_t passo_path_shaped_corner(const struct passo_path_planner *path,
 	static const uint32_t JERK_PARTS[] = {JERK_EXCESS, 4, 2};
 	struct passo_path_item *last = passo_path_item(path, path->added - 1);
 	const bool soft = passo_path_is_soft(path), bends = corner->bends_before || corner->bends_behind;
-	const uint64_t radius = radius_of(corner), jerk = jerk_of(path, corner);
+	const uint64_t turn = passo_isqrt64(corner->turn);
+	const uint64_t radius = radius_of(corner, turn), jerk = jerk_of(path, corner, turn);
 	const uint64_t needed = passo_path_larger(
 	    corner->bends_before ? wanted(last) : 0, corner->bends_behind ? wanted(item) : 0);
 	const uint64_t weakest = weakest_of(path, unit);
-	const uint64_t across = passo_mul_div(needed, passo_isqrt64(corner->turn), corner->over);
-	uint32_t quarters = bends ? lacking(across, weakest) : 0;
+	const uint64_t across = passo_mul_div(needed, turn, corner->over);
+	uint32_t quarters = lacking(across, weakest);
 	uint64_t most = UINT64_MAX, fastest = UINT64_MAX;
 
 	if (soft && bends) {

@@ -97,8 +97,7 @@ static uint64_t slope_left(
 struct ahead {
 	uint64_t square; /* the lowest that is allowed */
 	uint64_t slope;  /* the lowest of the lines, whatever their curves */
-	uint64_t up;     /* the steepest that a ramp up over them may be */
-	uint64_t down;   /* the same of a ramp down */
+	uint64_t left;   /* the steepest that a ramp up, or down, over them may be */
 	uint64_t rest;   /* length to the end of the line at which the path rests; 0: it does not */
 	uint64_t end;    /* the square there */
 	bool open;       /* further lines may raise it */
@@ -108,10 +107,9 @@ struct ahead {
 /* Over a length. Where it is needed the path rests at the end of the newest line; before, that line is not
  * entered, and what is behind its start is not known. */
 static struct ahead look_ahead(
-    const struct passo_path_planner *path, uint64_t length, enum passo_path_need need)
+    const struct passo_path_planner *path, uint64_t length, enum passo_path_need need, bool up)
 {
-	struct ahead ahead = {
-	    .square = PASSO_PATH_SQUARE_MAX, .slope = UINT64_MAX, .up = UINT64_MAX, .down = UINT64_MAX};
+	struct ahead ahead = {.square = PASSO_PATH_SQUARE_MAX, .slope = UINT64_MAX, .left = UINT64_MAX};
 	uint64_t passed = 0;
 
 	for (uint32_t index = path->planned;; index++) {
@@ -130,9 +128,8 @@ static struct ahead look_ahead(
 
 		ahead.open = ahead.open || !passo_path_is_settled(path, index);
 		ahead.slope = passo_path_smaller(ahead.slope, item->slope);
-		ahead.up = passo_path_smaller(
-		    ahead.up, slope_left(path, item, true, passo_path_smaller(passed, length)));
-		ahead.down = passo_path_smaller(ahead.down, slope_left(path, item, false, 0));
+		ahead.left = passo_path_smaller(
+		    ahead.left, slope_left(path, item, up, up ? passo_path_smaller(passed, length) : 0));
 		ahead.square = passo_path_smaller(ahead.square, item->top);
 		if (beyond > 0) {
 			ahead.square = passo_path_smaller(ahead.square, before);
@@ -191,7 +188,7 @@ static struct passo_path_aim calm(
 {
 	const uint64_t from = path->velocity, slope = passo_path_item(path, path->planned)->slope;
 	const uint64_t most = from + passo_path_change(path, slope, ticks);
-	struct ahead ahead = look_ahead(path, passo_path_length_in(path, 2 * from, ticks + next), need);
+	struct ahead ahead = look_ahead(path, passo_path_length_in(path, 2 * from, ticks + next), need, true);
 	uint64_t to = passo_path_velocity_of(lowest(&ahead));
 
 	if (ahead.rest > 0 && from > 0) {
@@ -209,7 +206,7 @@ static struct passo_path_aim calm(
 		ahead = look_ahead(path,
 		    passo_path_length_in(path, from + most, ticks)
 		        + passo_path_length_in(path, 2 * most, next),
-		    need);
+		    need, true);
 		to = passo_path_velocity_of(lowest(&ahead));
 		const uint64_t units = UINT64_C(1) << (17u - path->machine.tick_log2);
 		if (ahead.rest > 0 && from > 0) { /* the next one is the last */
@@ -223,11 +220,11 @@ static struct passo_path_aim calm(
 			    passo_mul_div(ahead.rest, units, ticks + next));
 			to = passo_path_smaller(to, passo_path_change(path, ahead.slope, next));
 		}
-		to = passo_path_smaller(to, from + passo_path_change(path, ahead.up, ticks));
+		to = passo_path_smaller(to, from + passo_path_change(path, ahead.left, ticks));
 		to = passo_path_larger(to, from);
 	}
 	struct passo_path_aim aim = aim_at(
-	    path, to, passo_path_length_in(path, from + to, ticks), to > from ? ahead.up : ahead.slope);
+	    path, to, passo_path_length_in(path, from + to, ticks), to > from ? ahead.left : ahead.slope);
 	aim.open = ahead.open;
 	return aim;
 }
@@ -256,12 +253,12 @@ static struct passo_path_aim brake(const struct passo_path_planner *path, uint64
 		const uint64_t way = passo_path_length_in(path, from + to, ticks);
 		const uint64_t next = passo_path_pace_need(path, ticks, 2);
 		const struct ahead ahead =
-		    look_ahead(path, way + passo_path_length_in(path, 2 * to, next), PASSO_PATH_FULL);
+		    look_ahead(path, way + passo_path_length_in(path, 2 * to, next), PASSO_PATH_FULL, false);
 		const struct passo_path_aim aim = aim_at(path, to, way, ahead.slope);
 
-		if (ahead.down
+		if (ahead.left
 		    < slope) { /* the longer way of a ramp that is less steep may have more curves */
-			slope = ahead.down;
+			slope = ahead.left;
 			continue;
 		}
 		if (ahead.rest == 0 && aim.square <= ahead.square && is_below(path, &aim))
@@ -282,7 +279,7 @@ struct passo_path_aim passo_path_at_pace(
 		return *aim;
 	const uint64_t way = passo_path_length_in(path, 2 * passo_path_velocity_of(aim->square), then);
 	if (ticks >= least) {
-		const struct ahead ahead = look_ahead(path, aim->length + way, need);
+		const struct ahead ahead = look_ahead(path, aim->length + way, need, true);
 
 		if (!ahead.unknown && lowest(&ahead) >= aim->square)
 			return *aim;

@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from passo.build import Parameters
-from passo.engine import AroundEngine
+from passo.engine import AroundEngine, moves_of
 from passo.grbl import Grbl
 from passo.grbl_setup import attach
 from passo.machine_file import MachineFile, read_machine
@@ -66,9 +66,7 @@ def run_gantry(machine_path: Path, folder: Path) -> dict[str, Any]:
     events = np.concatenate(engine.events)
     seconds, places = events["clock"] / machine.clock_hz, []
     for motor in motors:
-        rising = np.diff(events["step"].astype(np.int64) >> motor & 1, prepend=0) == 1
-        back = events["dir"].astype(np.int64) >> motor & 1
-        places.append((start + np.cumsum(np.where(rising, 1 - 2 * back, 0))) / scale)
+        places.append((start + np.cumsum(moves_of(events, motor))) / scale)
     places[1] = places[1] + SKEW
     wanted = [machine.switches.pull_off - offset for offset in machine.ends[AXIS].offsets]
     off = max(abs(place[-1] - end) for place, end in zip(places, wanted, strict=True)) * scale

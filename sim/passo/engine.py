@@ -27,6 +27,12 @@ def _untouched() -> Any:
     return ffi().new_allocator(should_clear_after_alloc=False)
 
 
+def moves_of(events: np.ndarray, bit: int) -> np.ndarray:
+    """The step that the pins of a bit make at each of all events (EVENT): -1, 0, 1."""
+    level, back = ((events[pin] >> np.uint64(bit) & np.uint64(1)).astype(np.int8) for pin in ("step", "dir"))
+    return (np.diff(level, prepend=np.int8(0)) == 1) * (1 - 2 * back)
+
+
 class DifferenceError(Failure):
     """RTL and model differ: `expected` is the model's level or word, `actual` the RTL's."""
 

@@ -128,9 +128,7 @@ def setup_of(machine: MachineFile, parameters: Parameters, defaults: Any, pages:
         made.homed |= (end.home is not None) << axis
     made.squared = sum(1 << axis for axis in machine.squared)
     made.racking = round(machine.switches.racking * 1000)
-    for axis in machine.squared:
-        for motor, offset in zip(machine.motors_of(axis), machine.ends[axis].offsets, strict=False):
-            made.offset[motor] = round(offset * 1000)
+    made.offset[0 : len(machine.offsets)] = machine.offsets
     made.probe, made.pages = machine.switches.probe, pages
     return made
 
@@ -162,7 +160,7 @@ def attach(engine: Any, machine: MachineFile, skews: dict[int, int] | None = Non
             wires += [
                 (NUMBERS[switch], motor, axis, above, travel if above else 0)
                 for motor in range(len(rows))
-                if machine.mask(switch) >> motor & 1 and motor in machine.motors_of(axis)
+                if machine.bits(switch, axis) >> motor & 1
             ]
     if machine.switches.probe:
         axis = min(len(machine.ends), PROBED) - 1
@@ -170,7 +168,7 @@ def attach(engine: Any, machine: MachineFile, skews: dict[int, int] | None = Non
     for wire, (pin, bit, axis, above, at) in zip(config.wire, wires, strict=False):
         wire.input, wire.bit, wire.above = pin, bit, above
         wire.axis, wire.at = (bit if pin != NUMBERS["probe"] else axis), at
-        if len(mixed := np.flatnonzero(rows[:, axis] * (np.abs(rows).sum(axis=1) > 1))):
+        if len(mixed := np.flatnonzero(rows[:, axis] * machine.settings.motors.mixed_of(len(travels)))):
             wire.axis, wire.other = (int(motor) for motor in mixed)
             wire.share, wire.at = rows[wire.other][axis], 2 * at
         wire.is_switch, wire.inverted = True, machine.switches.inverted and pin != NUMBERS["probe"]

@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from passo.engine import moves_of
+
 DRAIN = 1 << 15  # events that are worth to be drained
 
 
@@ -53,9 +55,8 @@ class HostLoop:
         origin = int(rises[0]) if len(rises) else 0
         clocks, positions = [], []
         for axis in range(axes):
-            level = (events["step"] >> np.uint64(axis)).astype(np.int64) & 1
-            rising = np.flatnonzero(np.diff(level, prepend=0) == 1)
-            back = (events["dir"][rising] >> np.uint64(axis) & np.uint64(1)).astype(np.int64)
-            clocks.append(events["clock"][rising].astype(np.int64) - origin)
-            positions.append(np.cumsum(1 - 2 * back))
+            moves = moves_of(events, axis)
+            made = np.flatnonzero(moves)
+            clocks.append(events["clock"][made].astype(np.int64) - origin)
+            positions.append(np.cumsum(moves[made]))
         return Steps(clocks, positions, (rises - origin).tolist(), (falls - origin).tolist(), origin)

@@ -123,13 +123,22 @@ class MachineFile:
     @property
     def limited(self) -> list[str]:
         """Names of what has limits: the axes, and the motors that move two of them."""
-        own = [name for name in self.motors if len(name) > 2]
-        return [*AXIS_LETTERS[: len(self.ends)], *own]
+        axes = len(self.ends)
+        return [*AXIS_LETTERS[:axes], *np.array(self.motors)[self.settings.motors.mixed_of(axes)].tolist()]
 
     @property
     def squared(self) -> list[int]:
         """Axes whose motors have a limit switch each, by which they home."""
         return [axis for axis, end in enumerate(self.ends) if self.switches.racking and _squares(end)]
+
+    @property
+    def offsets(self) -> list[int]:
+        """Of each motor: its edge from that of its axis, um."""
+        found = [0] * len(self.motors)
+        for axis in self.squared:
+            for motor, offset in zip(self.motors_of(axis), self.ends[axis].offsets, strict=False):
+                found[motor] = round(offset * 1000)
+        return found
 
     def motors_of(self, axis: int) -> list[int]:
         """The motors that an axis is named after: its own, and those behind the axes."""

@@ -261,14 +261,10 @@ def definitions(machine: MachineFile) -> dict[str, Any]:
 
 def _squares(machine: MachineFile) -> dict[str, Any]:
     """Lengths in um."""
-    offsets = [0.0] * len(machine.motors)
-    for axis in machine.squared:
-        for motor, offset in zip(machine.motors_of(axis), machine.ends[axis].offsets, strict=False):
-            offsets[motor] = offset
     return {
         "SQUARED": sum(1 << axis for axis in machine.squared),
         "RACKING": round(machine.switches.racking * 1000),
-        "OFFSETS": ",".join(str(round(offset * 1000)) for offset in offsets),
+        "OFFSETS": ",".join(map(str, machine.offsets)),
     }
 
 
@@ -278,14 +274,7 @@ def _motors(motors: Motors) -> dict[str, int]:
     signs = {"MOTORS_PLUS": 1, "MOTORS_MINUS": -1}
     return {
         "MOTORS": len(motors.rows),
-        **{
-            name: sum(
-                (part == sign) << (8 * motor + axis)
-                for motor, row in enumerate(motors.rows)
-                for axis, part in enumerate(row)
-            )
-            for name, sign in signs.items()
-        },
+        **{name: int.from_bytes(bytes(motors.bits(sign)), "little") for name, sign in signs.items()},
         **{f"MOTORS_{key.upper()}": int(getattr(motors.mixed, key)) for key in MOTOR_KEYS},
     }
 

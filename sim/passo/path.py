@@ -41,6 +41,14 @@ class Motors:
         """Motor x axis."""
         return np.array(self.rows or np.eye(axes, dtype=int))
 
+    def mixed_of(self, axes: int) -> np.ndarray:
+        """Of each motor, whether it moves two axes."""
+        return np.abs(self.map(axes)).sum(axis=1) > 1
+
+    def bits(self, sign: int) -> list[int]:
+        """Of each motor the axes, a bit each, that it moves with this sign."""
+        return [sum((part == sign) << axis for axis, part in enumerate(row)) for row in self.rows]
+
     def axes_of(self, motors: np.ndarray) -> np.ndarray:
         """Places of the axes, from a column per motor."""
         if not self.rows:
@@ -72,9 +80,9 @@ class PathSettings:
 
     def limits(self) -> list[tuple[np.ndarray, PathAxis]]:
         """Directions of length 1 that have limits, and these: axes, then motors that move two of them."""
-        rows = self.motors.map(len(self.axes))
-        found = list(zip(np.eye(len(self.axes)), self.axes, strict=True))
-        for row in rows[np.abs(rows).sum(axis=1) > 1]:
+        count = len(self.axes)
+        found = list(zip(np.eye(count), self.axes, strict=True))
+        for row in self.motors.map(count)[self.motors.mixed_of(count)]:
             size = float(np.linalg.norm(row))
             moved = [axis for axis, part in zip(self.axes, row, strict=True) if part]
             own = {
@@ -102,11 +110,7 @@ class PathSettings:
                 "reserve_clocks": self.reserve_clocks,
                 "polls": self.polls,
                 "unrounded": self.unrounded,
-                "motors": (
-                    len(self.motors.rows),
-                    [sum((part > 0) << axis for axis, part in enumerate(row)) for row in self.motors.rows],
-                    [sum((part < 0) << axis for axis, part in enumerate(row)) for row in self.motors.rows],
-                ),
+                "motors": (len(self.motors.rows), self.motors.bits(1), self.motors.bits(-1)),
                 "mixed": {name: q32(getattr(self.motors.mixed, name)) for name in names},
             },
         )

@@ -9,7 +9,7 @@ import numpy as np
 
 from passo.build import Parameters
 from passo.driver import Driver
-from passo.engine import Engine, model_engine, rtl_engine
+from passo.engine import Engine, model_engine, moves_of, rtl_engine
 from passo.failure import Failure
 from passo.host import ChannelState
 from passo.move_forms import USER_BANK
@@ -69,10 +69,9 @@ class Run:
 
     def steps(self, axis: int) -> tuple[np.ndarray, np.ndarray]:
         """Clocks since the start of the motion and directions (1, -1) of all steps of an axis."""
-        level = self.pins["step"] >> axis & 1
-        rising = np.flatnonzero(level & ~np.concatenate([[0], level[:-1]]) & 1)
-        negative = self.pins["dir"][rising] >> axis & 1
-        return self.pins["clock"][rising].astype(np.int64) - self.start, 1 - 2 * negative.astype(np.int8)
+        moves = moves_of(self.pins, axis)
+        made = np.flatnonzero(moves)
+        return self.pins["clock"][made].astype(np.int64) - self.start, moves[made]
 
     def commanded(self, axis: int) -> tuple[int, int]:
         """Commanded steps of an axis over all moves: their sum, and the sum of their magnitudes."""

@@ -11,24 +11,20 @@
 
 #define ACTIONS_MICROSECONDS 200u
 #define MICROSECONDS_PER_SECOND 1000000u
-#define LEVELS_AT 16u    /* in the output word */
-#ifdef PASSO_PLAIN_GCODE /* nor do outputs change at rest */
-#define TOOLS false
-#else
-#define TOOLS true
-#endif
+#define LEVELS_AT 16u /* in the output word */
 
 void passo_player_open(struct passo_player *player, struct passo_gcode *gcode, struct passo_path_feed *feed,
     const struct passo_player_machine *machine)
 {
 	*player = (struct passo_player){.gcode = gcode, .feed = feed, .machine = machine};
-	if (TOOLS)
+	if (PASSO_GCODE_HAS_TOOLS)
 		player->levels = feed->passo->output.levels;
 }
 
 bool passo_player_has_taken(const struct passo_player *player)
 {
-	return !player->waits && !player->probes && !(TOOLS && (player->spins || player->restores))
+	return !player->waits && !player->probes
+	    && !(PASSO_GCODE_HAS_TOOLS && (player->spins || player->restores))
 	    && !passo_gcode_is_busy(player->gcode);
 }
 
@@ -44,12 +40,12 @@ bool passo_player_is_idle(const struct passo_player *player)
 
 void passo_player_go_on(struct passo_player *player)
 {
-	if (TOOLS && player->changes) {
+	if (PASSO_GCODE_HAS_TOOLS && player->changes) {
 		passo_gcode_load(player->gcode, player->loads);
 		player->restores = true;
 	}
 	player->paused = false;
-	if (TOOLS)
+	if (PASSO_GCODE_HAS_TOOLS)
 		player->changes = false;
 }
 
@@ -75,14 +71,14 @@ static bool spins_up(const struct passo_player *player, uint8_t levels)
 	const unsigned on = PASSO_GCODE_OUTPUT_SPINDLE >> LEVELS_AT,
 		       reverse = PASSO_GCODE_OUTPUT_REVERSE >> LEVELS_AT;
 
-	return TOOLS && player->machine->spin_up > 0 && (levels & on)
+	return PASSO_GCODE_HAS_TOOLS && player->machine->spin_up > 0 && (levels & on)
 	    && ((levels ^ player->levels) & (on | reverse));
 }
 
 /* What the program has on; while a tool is changed, nothing. */
 static uint32_t output_of(const struct passo_player *player, uint32_t output)
 {
-	return (TOOLS && player->changes) || !player->feed->passo->has_outputs ? 0u : output;
+	return (PASSO_GCODE_HAS_TOOLS && player->changes) || !player->feed->passo->has_outputs ? 0u : output;
 }
 
 /* At rest. Not `done`: some pins still wait for their times. */
@@ -91,7 +87,8 @@ static enum passo_error set_output(struct passo_player *player, uint32_t output,
 	struct passo *passo = player->feed->passo;
 	const uint8_t levels = (uint8_t)(output_of(player, output) >> LEVELS_AT);
 
-	*done = !TOOLS || !passo->has_outputs || (levels == player->levels && !player->unsure);
+	*done =
+	    !PASSO_GCODE_HAS_TOOLS || !passo->has_outputs || (levels == player->levels && !player->unsure);
 	if (*done)
 		return PASSO_OK;
 	const enum passo_error error = passo_set_levels(passo, levels);
@@ -178,7 +175,7 @@ static enum passo_error take_line(struct passo_player *player, enum passo_player
 	player->waits = error == PASSO_PLAN_PATH_FULL;
 	if (error == PASSO_PLAN_OK) {
 		player->chords++;
-		if (TOOLS)
+		if (PASSO_GCODE_HAS_TOOLS)
 			player->levels = (uint8_t)(output >> LEVELS_AT);
 		if (action->stops)
 			passo_path_dwell(player->feed->path, 0);
@@ -204,7 +201,7 @@ enum passo_error passo_player_restart(struct passo_player *player)
 	passo_path_feed_open(player->feed, player->feed->passo, player->feed->path);
 	passo_gcode_set_position(player->gcode, position);
 	player->waits = player->probes = player->paused = player->dwells = false;
-	if (TOOLS) {
+	if (PASSO_GCODE_HAS_TOOLS) {
 		player->restores = player->spins = false;
 		player->unsure = true;
 	}
@@ -247,7 +244,7 @@ static enum passo_error take_at_rest(struct passo_player *player, enum passo_pla
 		*event = PASSO_PLAYER_PAUSED;
 		break;
 	case PASSO_GCODE_CHANGE:
-		if (!TOOLS)
+		if (!PASSO_GCODE_HAS_TOOLS)
 			break;
 		player->paused = player->changes = true;
 		player->loads = player->action.tool;
@@ -269,7 +266,7 @@ static void check_action(struct passo_player *player, enum passo_player_event *e
 
 	if (kind == PASSO_GCODE_END) {
 		*event = PASSO_PLAYER_ENDED;
-	} else if (TOOLS && kind == PASSO_GCODE_CHANGE) {
+	} else if (PASSO_GCODE_HAS_TOOLS && kind == PASSO_GCODE_CHANGE) {
 		passo_gcode_load(player->gcode, player->action.tool);
 	} else if ((kind == PASSO_GCODE_LINE || kind == PASSO_GCODE_PROBE)
 	           && !passo_player_allows(player, player->action.target)) {
@@ -320,13 +317,13 @@ static enum passo_error take_actions(struct passo_player *player, enum passo_pla
 	enum passo_error error = PASSO_OK;
 
 	*event = PASSO_PLAYER_NOTHING;
-	if (TOOLS && player->restores) {
+	if (PASSO_GCODE_HAS_TOOLS && player->restores) {
 		bool done = false;
 
 		error = set_output(player, passo_gcode_output(player->gcode), &done);
 		player->restores = !done;
 	}
-	if (TOOLS && (player->restores || still_spins(player)))
+	if (PASSO_GCODE_HAS_TOOLS && (player->restores || still_spins(player)))
 		return error;
 	while (error == PASSO_OK && *event == PASSO_PLAYER_NOTHING && !player->probes && !player->paused
 	       && !passo_path_feed_is_urgent(player->feed)
@@ -345,7 +342,7 @@ static enum passo_error mind_output(struct passo_player *player)
 {
 	bool done = false;
 
-	if (!TOOLS || player->checks || !passo_player_has_taken(player)
+	if (!PASSO_GCODE_HAS_TOOLS || player->checks || !passo_player_has_taken(player)
 	    || passo_path_feed_is_moving(player->feed) || passo_is_moving(player->feed->passo))
 		return PASSO_OK;
 	return set_output(player, passo_gcode_output(player->gcode), &done);
