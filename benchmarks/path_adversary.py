@@ -5,7 +5,7 @@
 
 With --motors on machines whose motors are not their axes. With --keep the smallest cases go to
 benchmarks/path_worst.json; tests/test_path_search.py has all of it. Batches that are done are kept in
-build/path_search, by what they depend on: an interrupted run continues.
+build/path_search, by what they depend on, with all cases beyond a bound: an interrupted run continues.
 """
 
 import hashlib
@@ -51,6 +51,7 @@ class Found:
     worst: dict[str, tuple[float, Case]] = field(default_factory=dict)
     beyond: dict[str, int] = field(default_factory=dict)
     batches: dict[str, int] = field(default_factory=dict)  # seed of the first batch with a fault of a kind
+    failed: list[tuple[dict[str, str], Case]] = field(default_factory=list)  # what is beyond, by kind
 
     def see(self, case: Case, measured: Measured) -> None:
         """Count a case."""
@@ -60,10 +61,13 @@ class Found:
                 self.worst[name] = (figure(measured), case)
         for kind in measured.faults:
             self.beyond[kind] = self.beyond.get(kind, 0) + 1
+        if measured.faults:
+            self.failed.append((measured.faults, case))
 
     def add(self, other: "Found", seed: int) -> None:
         """Count those of a batch."""
         self.paths += other.paths
+        self.failed += other.failed
         for name, (value, case) in other.worst.items():
             if value > self.worst.get(name, (0.0, case))[0]:
                 self.worst[name] = (value, case)
@@ -74,14 +78,16 @@ class Found:
     def to_json(self) -> str:
         """In a line."""
         worst = {name: (value, case.to_json()) for name, (value, case) in self.worst.items()}
-        return json.dumps({"paths": self.paths, "worst": worst, "beyond": self.beyond})
+        failed = [(faults, case.to_json()) for faults, case in self.failed]
+        return json.dumps({"paths": self.paths, "worst": worst, "beyond": self.beyond, "failed": failed})
 
 
 def found_of(text: str) -> Found:
     """Those of a batch, from its line."""
     data = json.loads(text)
     worst = {name: (value, case_of(case)) for name, (value, case) in data["worst"].items()}
-    return Found(data["paths"], worst, data["beyond"])
+    failed = [(faults, case_of(case)) for faults, case in data["failed"]]
+    return Found(data["paths"], worst, data["beyond"], failed=failed)
 
 
 def done_in() -> Path:

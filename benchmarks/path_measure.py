@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Measures a path: its time against the fastest motion, and its pins against the limits of the axes."""
 
+import math
 from dataclasses import dataclass, field, replace
 from itertools import product
 from math import inf
@@ -19,8 +20,8 @@ from benchmarks.path_reference_jerk import soft_seconds
 from tests.helpers.path_player import Played, Player
 
 UNLIMITED_AIM, LOOK_AHEAD_AIM = 1.02, 1.05
-FAST_POLLS = 8000  # per second, of a host that can send any path: the fastest motion knows of no host
-PACED_AIM = 2.0  # what the polls of the case cost of the time
+FAST_POLLS = 1_000_000  # per second, of a host that can send any path: the fastest motion knows of no host
+PACED_AIM = 2.0  # what the polls of the case cost of the time, beyond the time that each line takes to send
 SOFT_AIM = 1.6  # cosine ramps, and half of the jerk in curves
 SHAPED_AIM = 2.1  # a ramp over several lines has the slope of the weakest axis, doubled as often as possible
 OFF_BOUND = 1.0
@@ -65,7 +66,7 @@ class Measured:
         if self.soft > SOFT_AIM:
             found["slow"] = f"{self.soft:.4f} times a fast motion with this jerk, all lines known"
         if self.paced > PACED_AIM:
-            found["paced"] = f"{self.paced:.4f} times as long as with {FAST_POLLS} polls"
+            found["paced"] = f"{self.paced:.4f} times as long as without a host"
         if self.off > OFF_BOUND:
             found["off"] = f"{self.off:.3f} steps of all motors off the path"
         for share in sorted(self.shares, key=lambda share: share.share):
@@ -90,13 +91,17 @@ def compare(case: Case) -> Measured:
 
 def _ratios(measured: Measured, lines: list[Line], settings: PathSettings, fits: bool) -> None:
     known = max(len(lines) + 4, LOOK_AHEAD)  # with fewer places the pace allows fewer ramps
-    paced = plan(lines, settings, known).seconds
+    paced = plan(lines, settings, known)
+    line_seconds = paced.path.c.line_clocks / settings.clock_hz
     settings = replace(settings, polls=FAST_POLLS)
     planned = plan(lines, settings, known)
     seconds = planned.seconds
     slowest = min((feed for _, feed in lines if feed is not None), default=inf)
     rounding = 1 / planned.path.substeps_per_mm / slowest  # lines are whole substeps
-    ratio, measured.paced = (seconds - rounding) / measured.optimum, paced / seconds
+    ratio, measured.paced = (seconds - rounding) / measured.optimum, paced.seconds / seconds
+    if measured.paced > PACED_AIM and len(paced.lines) == len(lines):  # none were merged
+        sent = fastest(sendable(lines, line_seconds), settings).seconds
+        measured.paced = paced.seconds / max(seconds, sent)
     if settings.profile == "linear":
         measured.unlimited = ratio
         if fits:
@@ -106,6 +111,15 @@ def _ratios(measured: Measured, lines: list[Line], settings: PathSettings, fits:
         measured.soft = ratio * measured.optimum / soft_seconds(lines, settings)
     else:
         measured.shaped = ratio
+
+
+def sendable(lines: list[Line], seconds: float) -> list[Line]:
+    """The same lines at feeds with which each of them takes so long, at least."""
+    begin = [(0.0,) * len(lines[0][0]), *(target for target, _ in lines[:-1])]
+    return [
+        (target, min(feed or inf, math.dist(before, target) / seconds))
+        for before, (target, feed) in zip(begin, lines, strict=True)
+    ]
 
 
 def play(case: Case, measured: Measured) -> None:

@@ -60,11 +60,17 @@ class Motion:
         return float(self.times.sum())
 
     def fits(self, look_ahead: int, spare: int = 4) -> bool:
-        """Whether the braking distance is always within this number of lines."""
-        line = np.searchsorted(self.path.end, self.place[:-1], "right")
-        last = np.minimum(line + look_ahead - spare, len(self.path.end) - 1)
-        weakest = np.minimum.accumulate(self.along[::-1])[::-1]
-        reach = np.where(last == len(self.path.end) - 1, np.inf, self.path.end[last] - self.place[:-1])
+        """Whether the braking distance is always within this number of lines, each of one feed.
+
+        From the highest speed on an arc it is pi / 2 times that on a straight line: with `w` the share of the
+        acceleration that the curve takes, `dw/ds = -2 sqrt(1 - w^2) / r`.
+        """
+        ends = np.union1d(self.path.end, _feeds(self.path)[0])
+        line = np.searchsorted(ends, self.place[:-1], "right")
+        last = np.minimum(line + look_ahead - spare, len(ends) - 1)
+        along = np.where(self.bent, self.along * 2 / pi, self.along)
+        weakest = np.minimum.accumulate(along[::-1])[::-1]
+        reach = np.where(last == len(ends) - 1, np.inf, ends[last] - self.place[:-1])
         return bool((self.square[:-1] <= 2 * weakest * reach).all())
 
 

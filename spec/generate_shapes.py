@@ -151,10 +151,9 @@ def c_header() -> str:
 #define PASSO_BANKS {len(names)}u
 #define PASSO_BANK_POINTS {POINTS}u
 
-/* Points of banks 1 to {len(names)} ({", ".join(names)}) in UQ0.16: point k is shape(k / 256) * 65536 to
- * within 2, so that the area below the points is that of the shape.
- * Point 256 is always 65536 and not stored. */
-extern const uint16_t passo_shapes[PASSO_BANKS][PASSO_BANK_POINTS];
+/* Point k, 0 to 256, of banks 1 to {len(names)} ({", ".join(names)}), UQ1.16: shape(k / 256) * 65536 to
+ * within 2, so that the area below the points is that of the shape. Point 256 is 65536, and not stored. */
+uint32_t passo_shape_point(unsigned bank, unsigned k);
 /* Address of the first point of each. */
 extern const uint16_t passo_shape_addresses[PASSO_BANKS];
 
@@ -165,7 +164,16 @@ unsigned passo_bank_at(uint32_t address);
 """
 
 
-BANK_AT = """\
+FUNCTIONS = """\
+uint32_t passo_shape_point(unsigned bank, unsigned k)
+{
+	if (bank > SYMMETRIC)
+		return k * k; /* ease */
+	if (k < PASSO_BANK_POINTS / 2)
+		return halves[bank - 1u][k];
+	return k == PASSO_BANK_POINTS / 2 ? ONE / 2 : ONE - halves[bank - 1u][PASSO_BANK_POINTS - k];
+}
+
 unsigned passo_bank_at(uint32_t address)
 {
 	for (unsigned bank = 1; bank <= PASSO_BANKS; bank++)
@@ -185,15 +193,19 @@ def c_source() -> str:
         "",
         '#include "passo_registers.h"',
         "",
-        "const uint16_t passo_shapes[PASSO_BANKS][PASSO_BANK_POINTS] = {",
+        "#define SYMMETRIC 2u",
+        "#define ONE UINT32_C(65536)",
+        "",
+        "/* The first halves of those that are symmetric. */",
+        "static const uint16_t halves[SYMMETRIC][PASSO_BANK_POINTS / 2] = {",
     ]
-    for name, table in banks().items():
+    for name, table in list(banks().items())[:-1]:
         lines.append(f"\t{{ /* {name} */")
-        lines += _rows([f"{value:5}," for value in table], 12, "\t\t")
+        lines += _rows([f"{value:5}," for value in table[: POINTS // 2]], 12, "\t\t")
         lines.append("\t},")
     lines += ["};", "", "const uint16_t passo_shape_addresses[PASSO_BANKS] = {"]
     lines += [f"\tPASSO_ADDRESS_{name.upper()}_BASE," for name in banks()]
-    lines += ["};", "", *BANK_AT]
+    lines += ["};", "", *FUNCTIONS]
     return "\n".join(lines) + "\n"
 
 

@@ -68,7 +68,10 @@ bool passo_core_reset(struct passo_core *core, const struct passo_parameters *pa
 	passo_machine_reset(&core->machine);
 	passo_spi_reset(&core->spi);
 	passo_link_reset(&core->link);
-	memcpy(core->tables.points, passo_shapes, sizeof core->tables.points);
+	for (unsigned bank = 0; bank < PASSO_BANKS; bank++) {
+		for (unsigned k = 0; k < PASSO_BANK_POINTS; k++)
+			core->tables.points[bank][k] = (uint16_t)passo_shape_point(bank + 1u, k);
+	}
 	for (unsigned i = 0; i < parameters->channels; i++)
 		passo_channel_reset(&core->channel[i], parameters, (uint8_t)i);
 	passo_core_gather_outputs(core);

@@ -139,6 +139,8 @@ void passo_path_dwell(struct passo_path_planner *path, uint64_t clocks)
 
 	path->dwell = (uint32_t)passo_path_smaller(ticks, UINT32_MAX);
 	path->rest = true;
+	if (passo_path_is_soft(path))
+		passo_path_look_back(path); /* the newest line is straight to its end */
 	path->waits = false;
 	path->final = path->added;
 }

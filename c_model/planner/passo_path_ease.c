@@ -15,6 +15,12 @@
 /* On an arc at a speed v, of a radius r, the ramp that is steepest at t takes 3 v t / r of the jerk: with
  * half of it along the arc, 0.7 are left. UQ0.16. */
 #define ACROSS 15463u
+/* In square_between(). */
+#define JUMP 5u
+/* Corners of a curve: less is a zigzag. */
+#define TURNS 3u
+/* A twentieth of the deviation (UQ32.16 substeps), UQ.8 substeps. */
+#define OFF_PART (20u << 8)
 /* An axis with less than this part of the direction, or of its change, is hardly one of the curve. */
 #define SMALL 8u
 
@@ -57,10 +63,10 @@ static uint64_t wanted(const struct passo_path_item *item)
 	return passo_path_speed_square(passo_path_smaller(item->feed, item->limit));
 }
 
-/* Radius of the arc at a corner, UQ.8 substeps. */
-static uint64_t radius_of(const struct passo_path_corner *corner, uint64_t turn)
+/* Radius, UQ.8 substeps, of an arc over a length (UQ.30 substeps). */
+static uint64_t radius_of(uint64_t over, uint64_t turn)
 {
-	return passo_path_smaller(passo_mul_div(corner->over, 256, passo_path_larger(turn, 1)), UINT32_MAX);
+	return passo_path_smaller(passo_mul_div(over, 256, passo_path_larger(turn, 1)), UINT32_MAX);
 }
 
 /* Of the weakest axis that turns; one with a small part of the turn is stronger. */
@@ -79,11 +85,10 @@ static uint64_t jerk_of(
 	return jerk;
 }
 
-/* Highest square on an arc by the jerk: the cube of the velocity is the jerk times the square of the radius.
- */
-static uint64_t soft_square(uint64_t radius, uint64_t jerk)
+/* The square of a velocity whose cube is a jerk times an area, UQ.16 substeps^2. */
+static uint64_t soft_square(uint64_t area, uint64_t jerk)
 {
-	const struct passo_u128 cube = passo_multiply(jerk, radius * radius);
+	const struct passo_u128 cube = passo_multiply(jerk, area);
 	uint64_t velocity = 0;
 
 	for (uint64_t bit = PASSO_PATH_SPEED_MAX / 2; bit > 0; bit /= 2) {
@@ -143,6 +148,48 @@ static uint64_t soft_slope(const struct passo_path_planner *path, uint64_t radiu
 }
 
 #ifndef PASSO_WITHOUT_JERK_PATHS
+static int32_t half_turn(const struct passo_path_planner *path, const int32_t *unit, uint32_t axis)
+{
+	return unit[axis] / 2 - path->at.direction[axis] / 2;
+}
+
+/* Whether the path turns to the other side. */
+static bool turns_back(const struct passo_path_planner *path, const int32_t *unit)
+{
+	int64_t product = 0;
+
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
+		product += (int64_t)path->at.half_turn[axis] * half_turn(path, unit, axis) / 8;
+	return product < 0;
+}
+
+/* Highest square where a curve of several lines passes into one to the other side, in the middle of the last
+ * line. The acceleration changes at once by `k v^2`, `k` the change of the curvature. Steps that are off by
+ * `e` show a jerk of `0.75 k v^2 / w - 8 e / w^3` over a time w, so `k v^3 sqrt(k / e) / 11` at most; `e` is
+ * that of chords, and of lines that are merged. Half of the jerk is for the ramps in the curves. */
+static uint64_t square_between(const struct passo_path_planner *path, const struct passo_path_corner *corner,
+    const int32_t *unit, uint64_t turn, uint64_t jerk)
+{
+	if (path->at.turns < TURNS || !corner->bends_before || !turns_back(path, unit))
+		return PASSO_PATH_SQUARE_MAX;
+	const uint64_t last = passo_mul_div(path->at.turn, corner->over, path->at.over);
+	const uint64_t radius = radius_of(corner->over, turn + last);
+	const uint64_t off =
+	    path->deviation / OFF_PART + passo_mul_shift(corner->over, passo_path_larger(turn, last), 56);
+	return soft_square(radius * passo_isqrt64(passo_path_smaller(off, UINT32_MAX) * radius), JUMP * jerk);
+}
+
+void passo_path_keep_turn(struct passo_path_planner *path, uint64_t turn, uint64_t over, const int32_t *unit)
+{
+	struct passo_path_place *at = &path->at;
+
+	at->turns = over == 0 ? 0 : at->turns == 0 || turns_back(path, unit) ? 1 : at->turns + 1;
+	at->turn = turn;
+	at->over = over;
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
+		at->half_turn[axis] = half_turn(path, unit, axis);
+}
+
 /* Of a lone corner at a square: what a ramp over it lacks of the slopes beside it, in 256ths. What it leaves
  * of the acceleration of an axis before and behind the corner, in all, is for the corner. */
 static uint8_t lacking_over(const struct passo_path_planner *path, const struct passo_path_corner *corner,
@@ -171,7 +218,7 @@ uint64_t passo_path_shaped_corner(const struct passo_path_planner *path,
 	struct passo_path_item *last = passo_path_item(path, path->added - 1);
 	const bool soft = passo_path_is_soft(path), bends = corner->bends_before || corner->bends_behind;
 	const uint64_t turn = passo_isqrt64(corner->turn);
-	const uint64_t radius = radius_of(corner, turn), jerk = jerk_of(path, corner, turn);
+	const uint64_t radius = radius_of(corner->over, turn), jerk = jerk_of(path, corner, turn);
 	const uint64_t needed = passo_path_larger(
 	    corner->bends_before ? wanted(last) : 0, corner->bends_behind ? wanted(item) : 0);
 	const uint64_t weakest = weakest_of(path, unit);
@@ -180,13 +227,13 @@ uint64_t passo_path_shaped_corner(const struct passo_path_planner *path,
 	uint64_t most = UINT64_MAX, fastest = UINT64_MAX;
 
 	if (soft && bends) {
-		while (quarters < 2 && soft_square(radius, jerk / JERK_PARTS[quarters]) < needed)
+		while (quarters < 2 && soft_square(radius * radius, jerk / JERK_PARTS[quarters]) < needed)
 			quarters++;
-		fastest = soft_square(radius, jerk / JERK_PARTS[quarters]);
+		fastest = soft_square(radius * radius, jerk / JERK_PARTS[quarters]);
 		most = soft_slope(path, radius, jerk, passo_path_smaller(fastest, needed),
 		    across > weakest / EXCESS ? weakest : PASSO_PATH_SQUARE_MAX >> 2);
 	} else if (soft) {
-		fastest = soft_square(radius, jerk / 2);
+		fastest = soft_square(radius * radius, jerk / 2);
 	}
 	if (corner->bends_before)
 		ease(path, last, quarters, most);
@@ -200,6 +247,8 @@ uint64_t passo_path_shaped_corner(const struct passo_path_planner *path,
 
 		item->over = lacking_over(path, corner, unit, item, passed);
 	}
+	if (soft)
+		return passo_path_smaller(square, square_between(path, corner, unit, turn, jerk));
 #endif
 	return square;
 }

@@ -89,15 +89,25 @@ static uint64_t highest_before(
 
 	if (descent->lowest <= end)
 		return descent->lowest;
-	return passo_path_highest(path, &law, end, 0, end, descent->length, descent->lowest);
+	return passo_path_highest(path, &law, end, 0, UINT64_MAX, descent->length, descent->lowest);
+}
+
+/* Of a limit of an item, what is certain: the newest one may become part of a curve by the next one. */
+static uint64_t certain(const struct passo_path_planner *path, uint32_t index, uint64_t limit)
+{
+	const struct passo_path_item *item = passo_path_item(path, index);
+
+	if (index + 1 < path->added || item->last || path->rest || item->eased >= 2)
+		return limit;
+	return passo_path_larger(limit / (4u - item->eased) * 2, 1);
 }
 
 uint64_t passo_path_soft_reach(struct passo_path_planner *path, uint32_t index)
 {
 	struct passo_path_item *item = passo_path_item(path, index);
 	struct passo_path_descent best = {
-	    .slope = item->slope,
-	    .jerk = item->jerk,
+	    .slope = certain(path, index, item->slope),
+	    .jerk = certain(path, index, item->jerk),
 	    .length = (uint64_t)item->substeps << 32,
 	    .lowest = passo_path_velocity_of(item->corner),
 	    .anchor = index + 1,

@@ -20,7 +20,8 @@ static void narrow(struct passo_path_law *law, uint64_t slope, uint64_t jerk)
  */
 struct choice {
 	uint64_t top;
-	struct passo_path_law law; /* of the ramps up to there and down again */
+	struct passo_path_law law;    /* of the ramps up to there and down again */
+	struct passo_path_law behind; /* without the first line */
 	uint64_t level, length, end;
 	bool found, rest;
 	/* what further lines may change */
@@ -29,7 +30,7 @@ struct choice {
 
 /* The lines passed so far. */
 struct reach {
-	struct passo_path_law law;
+	struct passo_path_law law, behind;
 	uint64_t length;
 	uint64_t lowest; /* velocity that their limits and corners allow */
 	uint64_t rise;   /* length from which on more is allowed than before, no less than `least`; 0: none */
@@ -51,6 +52,7 @@ static void consider(const struct passo_path_planner *path, const struct reach *
 		choice->top = passo_path_highest(
 		    path, &reach->law, from, reach->pause, end, reach->length, reach->lowest);
 		choice->law = reach->law;
+		choice->behind = reach->behind;
 	}
 	if (choice->found && level <= choice->level)
 		return;
@@ -73,7 +75,11 @@ static void pass(const struct passo_path_planner *path, uint32_t index, struct r
 	reach->length += (uint64_t)item->substeps << 32;
 	if (index == path->planned)
 		reach->length -= (uint64_t)path->offset;
-	narrow(&reach->law, item->slope, item->jerk);
+	/* what a ramp of whole ticks has left of the first line has no say: the next one begins gently */
+	if (index > path->planned || passo_path_ticks_over(path, reach->length, 2 * from) >= TICKS_MIN / 8)
+		narrow(&reach->law, item->slope, item->jerk);
+	if (index > path->planned)
+		narrow(&reach->behind, item->slope, item->jerk);
 	if (!passo_path_is_settled(path, index) && reach->open == 0)
 		reach->open = reach->lowest;
 }
@@ -95,6 +101,7 @@ static struct choice choose(const struct passo_path_planner *path, uint32_t leas
 	struct choice choice = {.top = from};
 
 	*reach = (struct reach){.law = {UINT64_MAX, UINT64_MAX},
+	    .behind = {UINT64_MAX, UINT64_MAX},
 	    .lowest = UINT64_MAX,
 	    .least = passo_path_length_in(path, 2 * from, least),
 	    .pause = passo_path_pace_need(path, least, 2)};
@@ -115,6 +122,8 @@ static struct choice choose(const struct passo_path_planner *path, uint32_t leas
 			break;
 		reach->lowest = passo_path_smaller(reach->lowest, passo_path_larger(corner, from));
 		reach->law.slope = passo_path_pass_slope(next, reach->law.slope);
+		if (index > path->planned)
+			reach->behind.slope = passo_path_pass_slope(next, reach->behind.slope);
 		if (is_enough(path, reach, &choice))
 			break;
 	}
@@ -145,6 +154,26 @@ static bool is_worth(const struct passo_path_planner *path, const struct choice 
 	    && passo_path_ticks_over(path, down, from + choice->end) >= passo_path_pace_need(path, ticks, 2);
 }
 
+/* A ramp up to the top, of a length; where the first line, a small part of it, makes it gentle, a ramp within
+ * that line. */
+static struct passo_path_aim rise(
+    const struct passo_path_planner *path, const struct choice *choice, uint32_t least, uint64_t up)
+{
+	const struct passo_path_item *item = passo_path_item(path, path->planned);
+	const struct passo_path_law law = {item->slope, item->jerk};
+	const uint64_t from = path->velocity, top = choice->top;
+	const uint64_t left = ((uint64_t)item->substeps << 32) - (uint64_t)path->offset;
+	const struct passo_path_aim whole = aim_at(path, PASSO_PATH_UP, up, top);
+
+	if (left >= up / 4 || choice->behind.slope / 2 < choice->law.slope)
+		return whole;
+	const uint64_t first = passo_path_highest(path, &law, from, 0, UINT64_MAX, left, top);
+	const uint64_t way = passo_path_ramp_length(path, &law, from, first);
+	return passo_path_ticks_over(path, way, from + first) >= least
+	         ? aim_at(path, PASSO_PATH_UP, way, first)
+	         : whole;
+}
+
 struct passo_path_aim passo_path_soft_aim(const struct passo_path_planner *path, bool needed)
 {
 	const uint64_t from = path->velocity;
@@ -166,7 +195,7 @@ struct passo_path_aim passo_path_soft_aim(const struct passo_path_planner *path,
 		return aim;
 	}
 	if (choice.top > from && (from == 0 || passo_path_ticks_over(path, up, from + choice.top) >= least))
-		return aim_at(path, PASSO_PATH_UP, up, choice.top);
+		return rise(path, &choice, least, up);
 	if (is_worth(path, &choice, least) || choice.end >= from
 	    || (reach.rise > 0 && choice.level == reach.rise))
 		return aim_at(path, PASSO_PATH_FLAT, choice.level, from);

@@ -204,7 +204,9 @@ enum passo_plan_error passo_path_measure(
 		return PASSO_PLAN_TOO_LONG;
 
 	limit_line(path, unit, move->feed, item);
-	if (!path->rest)
+	if (path->rest)
+		passo_path_keep_turn(path, 0, 0, unit);
+	else
 		item->bend = passo_path_limit_corner(path, unit, length, item);
 	passo_path_keep_start(item, &path->at);
 	item->substeps = (uint32_t)substeps;

@@ -110,10 +110,9 @@ static uint32_t gentleness(enum passo_shape shape)
 	if (shape == PASSO_SHAPE_LINEAR)
 		return UINT32_C(1) << 16;
 	for (uint32_t k = 1; k < PASSO_BANK_POINTS; k++) {
-		const uint16_t *point = &passo_shapes[shape - 1][k];
-
-		if (steepest < (uint32_t)(point[0] - point[-1]))
-			steepest = (uint32_t)(point[0] - point[-1]);
+		const uint32_t rise =
+		    passo_shape_point((unsigned)shape, k) - passo_shape_point((unsigned)shape, k - 1);
+		steepest = rise > steepest ? rise : steepest;
 	}
 	return (UINT32_C(1) << 24) / (steepest + 1);
 }

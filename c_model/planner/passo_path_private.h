@@ -213,6 +213,18 @@ static inline void passo_path_restore_start(struct passo_path_item *item, const 
 #endif
 }
 
+/* The turn (Q1.30) from the last line to one with this unit vector; the new line is part of its curve, `over`
+ * a length in UQ.30 substeps, or not, 0. */
+#ifdef PASSO_WITHOUT_JERK_PATHS
+static inline void passo_path_keep_turn(
+    struct passo_path_planner *path, uint64_t turn, uint64_t over, const int32_t *unit)
+{
+	(void)path, (void)turn, (void)over, (void)unit;
+}
+#else
+void passo_path_keep_turn(struct passo_path_planner *path, uint64_t turn, uint64_t over, const int32_t *unit);
+#endif
+
 /* In how many parts the curve of an item is. */
 static inline unsigned passo_path_halves(const struct passo_path_item *item)
 {

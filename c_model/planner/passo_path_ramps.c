@@ -10,6 +10,10 @@
 /* While more lines may come, the reserve is divided into this number of ramps. */
 #define RAMPS_PER_RESERVE 4u
 
+/* By this part of its slope a ramp may be steeper: one that ends within several parts of the profile, with
+ * slopes that differ a little, is a little above it. */
+#define STEEPER 64u
+
 /* The ramps have moved on by a distance; in a path that goes on they pass the ends of lines. A ramp can be
  * beyond the end of the path only if the path lasts less than a tick: then it rests immediately. */
 static void advance(struct passo_path_planner *path, uint64_t distance)
@@ -73,7 +77,8 @@ static void follow(
     struct passo_path_planner *path, struct passo_path_aim *aim, uint32_t most, struct passo_ramp *ramp)
 {
 	const uint64_t begin = path->velocity, from = passo_path_square_of(begin);
-	const uint64_t fall = passo_path_smaller(passo_path_gain(aim->slope, aim->length), from);
+	const uint64_t slope = aim->slope + aim->slope / STEEPER;
+	const uint64_t fall = passo_path_smaller(passo_path_gain(slope, aim->length), from);
 
 	aim->square = passo_path_larger(aim->square, from - fall); /* where it cannot come down in time */
 	const uint64_t end = passo_path_velocity_of(aim->square);
@@ -81,7 +86,7 @@ static void follow(
 	const bool shaped = passo_path_is_shaped(path, aim);
 	const uint32_t used =
 	    (uint32_t)passo_path_smaller(ticks, shaped ? PASSO_PATH_SHAPED_TICKS_MAX : most);
-	const uint64_t limit = passo_path_change(path, aim->slope, used);
+	const uint64_t limit = passo_path_change(path, slope, used);
 	uint64_t change = begin < end ? end - begin : begin - end;
 
 	if (used < ticks)

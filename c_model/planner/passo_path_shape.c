@@ -19,7 +19,7 @@ static uint64_t square_at(uint64_t begin, uint64_t end, uint32_t share)
 
 uint32_t passo_path_too_fast(const struct passo_path_planner *path, const struct passo_path_aim *aim)
 {
-	const uint16_t *points = passo_shapes[passo_path_shape(path) - 1];
+	const unsigned bank = (unsigned)passo_path_shape(path);
 	const uint64_t begin = path->velocity;
 	const uint64_t end = (uint64_t)passo_isqrt64(aim->square) << PASSO_PATH_VELOCITY_SHIFT;
 	const bool falls = end < begin;
@@ -28,16 +28,16 @@ uint32_t passo_path_too_fast(const struct passo_path_planner *path, const struct
 	uint64_t area = 0; /* under the shape so far, in units of 2^-17 points */
 
 	for (uint32_t k = 0; k < PASSO_BANK_POINTS && index + 1 < path->added; k++) {
-		const uint32_t next = k + 1 < PASSO_BANK_POINTS ? points[k + 1] : UINT32_C(1) << 16;
+		const uint32_t point = passo_shape_point(bank, k), next = passo_shape_point(bank, k + 1);
 
-		area += points[k] + next;
+		area += point + next;
 		/* twice the mean velocity times the time so far, as a share of that of the whole ramp */
 		const uint64_t fixed = begin * 2 / PASSO_BANK_POINTS * (k + 1);
 		const uint64_t moved = passo_mul_div(
 		    falls ? begin - end : end - begin, area, (UINT64_C(1) << 16) * PASSO_BANK_POINTS);
 		const uint64_t covered =
 		    passo_mul_div(aim->length, falls ? fixed - moved : fixed + moved, begin + end);
-		const uint64_t square = square_at(begin, end, falls ? points[k] : next);
+		const uint64_t square = square_at(begin, end, falls ? point : next);
 
 		for (; corner <= covered && corner < aim->length && index + 1 < path->added; index++) {
 			if (square > passo_path_item(path, index + 1)->corner

@@ -107,6 +107,11 @@ struct passo_path_place {
 	uint64_t slope, jerk; /* of the last line, by the corner at its start */
 	uint8_t eased;        /* the same */
 #endif
+#ifndef PASSO_WITHOUT_JERK_PATHS
+	int32_t half_turn[PASSO_PATH_AXES_MAX]; /* of the change of direction at that corner, Q1.30 */
+	uint64_t turn, over;                    /* its size, and in which length it turns, UQ.30 substeps */
+	uint32_t turns; /* corners of this curve, to one side; 0: the line is in none */
+#endif
 	int32_t carry;        /* Q16: substeps that rounding has withheld from the lines so far */
 	uint32_t line_credit; /* clocks that the last lines have left, see passo_path_pace.c */
 };

@@ -9,10 +9,9 @@
 #define PASSO_BANKS 3u
 #define PASSO_BANK_POINTS 256u
 
-/* Points of banks 1 to 3 (cosine, sigmoid, ease) in UQ0.16: point k is shape(k / 256) * 65536 to
- * within 2, so that the area below the points is that of the shape.
- * Point 256 is always 65536 and not stored. */
-extern const uint16_t passo_shapes[PASSO_BANKS][PASSO_BANK_POINTS];
+/* Point k, 0 to 256, of banks 1 to 3 (cosine, sigmoid, ease), UQ1.16: shape(k / 256) * 65536 to
+ * within 2, so that the area below the points is that of the shape. Point 256 is 65536, and not stored. */
+uint32_t passo_shape_point(unsigned bank, unsigned k);
 /* Address of the first point of each. */
 extern const uint16_t passo_shape_addresses[PASSO_BANKS];
 

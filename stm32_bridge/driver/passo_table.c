@@ -30,6 +30,7 @@ static uint32_t user_id(const uint16_t *points)
 	return crc | HOLDS_USER;
 }
 
+/* No points: those after a reset. */
 static enum passo_error load(struct passo_host *host, unsigned bank, const uint16_t *points)
 {
 	const uint16_t address = passo_shape_addresses[bank - 1u];
@@ -38,7 +39,7 @@ static enum passo_error load(struct passo_host *host, unsigned bank, const uint1
 	for (unsigned k = 0; k < PASSO_TABLE_SIZE; k += BLOCK) {
 		unsigned count = PASSO_TABLE_SIZE - k < BLOCK ? PASSO_TABLE_SIZE - k : BLOCK;
 		for (unsigned i = 0; i < count; i++)
-			words[i] = points[k + i];
+			words[i] = points ? points[k + i] : passo_shape_point(bank, k + i);
 		enum passo_error error = passo_host_write(host, (uint16_t)(address + k), words, count);
 		if (error != PASSO_OK)
 			return error;
@@ -71,12 +72,10 @@ static enum passo_error make_hold(struct passo *passo, unsigned bank, uint32_t a
 	if (!passo_driver_at_rest(passo) || passo_unpack_status(passo->host->status).any_occupied)
 		return PASSO_ERROR_TABLE;
 	*holds = HOLDS_UNKNOWN;
-	if (user)
-		error = load(passo->host, bank, user);
-	else if (bank == PASSO_SHAPE_SIGMOID)
+	if (!user && bank == PASSO_SHAPE_SIGMOID)
 		error = load_sigmoid(passo->host, alpha);
 	else
-		error = load(passo->host, bank, passo_shapes[bank - 1u]);
+		error = load(passo->host, bank, user);
 	if (error == PASSO_OK)
 		*holds = wanted;
 	return (unsigned)error == PASSO_ERROR_REFUSED + PASSO_VERDICT_BUSY ? PASSO_ERROR_TABLE : error;

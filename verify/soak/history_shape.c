@@ -27,7 +27,7 @@ static void known_points(const struct world *world, struct shaped_move *move)
 {
 	for (unsigned bank = 0; bank < PASSO_BANKS; bank++) {
 		for (unsigned k = 0; k < PASSO_BANK_POINTS; k++)
-			move->points[bank][k] = passo_shapes[bank][k];
+			move->points[bank][k] = (uint16_t)passo_shape_point(bank + 1u, k);
 		move->points[bank][PASSO_BANK_POINTS] = 65536u;
 	}
 	for (size_t i = 0; i < world->fact_count; i++) {
