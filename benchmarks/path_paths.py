@@ -41,7 +41,7 @@ MACHINES: dict[str, PathSettings] = {
     "fine": PathSettings((PathAxis(1600), PathAxis(1600), PathAxis(1600, 12, 100))),
     "fast": PathSettings((PathAxis(400, 1000, 20_000, jerk=2_000_000),) * 3),
 }
-# Machines whose motors are not their axes; in the last one the motors are the weaker ones.
+# Machines whose motors are not their axes; those of corexy_weak and corexy_fast are the weaker ones.
 XY, XZ = ((1, 1, 0), (1, -1, 0), (0, 0, 1)), ((1, 0, 1), (0, 1, 0), (1, 0, -1))
 MOTORS: dict[str, PathSettings] = {
     "ganged": PathSettings(
@@ -58,8 +58,10 @@ MOTORS: dict[str, PathSettings] = {
         motors=Motors(XY, PathAxis(0, 250, 3000)),
     ),
     "corexy_soft": replace(MACHINES["soft"], motors=Motors(XY)),
+    "corexy_fast": replace(MACHINES["fast"], motors=Motors(XY, PathAxis(0, 800, 15_000, jerk=1_500_000))),
 }
 JERKS = ("soft", "fast")  # machines that are drawn with profile jerk
+JERKS_OF_MOTORS = ("corexy_soft", "corexy_fast")
 
 
 @dataclass(frozen=True)

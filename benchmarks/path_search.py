@@ -10,7 +10,16 @@ from hypothesis import seed as seeded
 from hypothesis import strategies as st
 
 from benchmarks.path_measure import Measured, measure
-from benchmarks.path_paths import JERKS, LINES_MAX, MACHINES, RAPID, Case, Piece, seconds_at_feed
+from benchmarks.path_paths import (
+    JERKS,
+    JERKS_OF_MOTORS,
+    LINES_MAX,
+    MACHINES,
+    RAPID,
+    Case,
+    Piece,
+    seconds_at_feed,
+)
 
 SECONDS = 1.5  # of a path at its feeds; longer ones are cut
 SIZES = (0.001, 0.0042, 0.02, 0.1, 0.3, 1.0, 5.0, 30.0, 200.0, 1000.0)  # mm, and all between
@@ -75,7 +84,13 @@ def fans(draw: Any) -> Piece:
 def cases(draw: Any, machines: Sequence[str] = tuple(MACHINES)) -> Case:
     """A path that takes no more than some seconds."""
     machine = draw(st.sampled_from(sorted(machines)))
-    profiles = ("linear", "linear", "cosine", "sigmoid", *(("jerk", "jerk") if machine in JERKS else ()))
+    profiles = (
+        "linear",
+        "linear",
+        "cosine",
+        "sigmoid",
+        *(("jerk", "jerk") if machine in (*JERKS, *JERKS_OF_MOTORS) else ()),
+    )
     case = Case(
         machine,
         tuple(draw(st.lists(pieces() | arcs() | fans(), min_size=1, max_size=4))),

@@ -224,6 +224,35 @@ def test_lost_steps_and_the_way_back(stop: int) -> None:
     assert driver.positions()[0] == 5000 and shafts.at[0] == 0
 
 
+@pytest.mark.parametrize("map_of_motors", ["ganged", "corexy"])
+def test_an_encoder_is_of_a_motor(map_of_motors: str) -> None:
+    """One motor that loses steps stops all on one clock; adopting moves the position of that motor alone."""
+    sign = 1 if map_of_motors == "ganged" else -1  # of the second motor: +Y of a CoreXY, X + Y and X - Y
+    driver, shafts = machine(ratio=RATIO_ONE * 2, limit=60, stop=1)
+    driver.call("configure_encoder", 1, struct("encoder_config", ratio=RATIO_ONE * 2, limit=60, stop=1))
+    slips = (0, 10)  # a step in ten of the second motor is lost
+    shafts.moves = lambda: [
+        shafts.turn(axis, 2 * (at - (int(at / slip) if slip else 0)) - shafts.at[axis])
+        for axis, (at, slip) in enumerate(zip(shafts.positions[:2], slips, strict=True))
+    ]
+    driver.call("move_by_speed", by_speed([9000, 9000 * sign, 0, 0], speed=10_000))
+    with pytest.raises(DriverError, match="FOLLOWING"):
+        driver.wait(2)
+    shafts.run(CLOCK_HZ // 100)
+    made = shafts.positions[0]
+    assert 240 <= made <= 330 and shafts.positions[1] == sign * made
+    shafts.moves = lambda: None
+    shafts.turn(1, -20 * sign)
+    shafts.engine.run(100)
+    assert reading(driver, 1).exceeded and not reading(driver, 0).exceeded
+    assert not any(driver.lib.passo_is_homed(driver.c, motor) for motor in (0, 1))
+    driver.call("adopt_encoder", 1)
+    driver.call("clear")
+    shafts.run(CLOCK_HZ // 100)
+    places = driver.positions()
+    assert places[0] == made and places[1] == shafts.at[1] // 2 != sign * made
+
+
 def test_an_error_off_its_scale() -> None:
     """It cannot tell where the axis is."""
     driver, shafts = machine(ratio=0xFFFFFFFF, limit=0xFFFF)

@@ -86,7 +86,9 @@ def test_greeting_and_settings(board: GrblBoard) -> None:
     """What a sender asks for first."""
     assert board.output == RESET + "\r\nGrbl 1.1h ['$' for help]\r\n"
     core = f"[CORE:{'.'.join(map(str, REGISTER_MAP))}:{HZ}:0]"
-    firmware = f"[VER:1.1h.passo:]\n[OPT:VNM,48,255]\n[FIRMWARE:Passo {passo.__version__}]"
+    firmware = (
+        f"[VER:1.1h.passo:]\n[OPT:VNM,48,255]\n[FIRMWARE:Passo {passo.__version__}]\n[KINEMATICS:Cartesian]"
+    )
     assert board.line("$I") == f"{firmware}\n{core}\nok"
     settings = board.line("$$").splitlines()
     assert settings[-1] == "ok"

@@ -8,15 +8,30 @@ import numpy as np
 import pytest
 from passo.engine import model_engine
 from passo.grbl_setup import core_for, machine_at
-from passo.machine_file import read_machine
-from passo.make_command import definitions
+from passo.machine_file import MachineFile, read_machine
+from passo.make_command import definitions, settings_lines
 from passo.toolchain import paths
 from passo_stm32.grbl_board import LARGE_IMAGE, GrblBoard, grbl_elf
 from passo_stm32.machine import Machine
 
 HEAD = 'clock_hz = 36_000_000\nchip = "STM32F103CB"\n'
 AXIS = '[[axis]]\nname = "{}"\nsteps_per_mm = {}\nspeed = {}\nacceleration = {}\ntravel = 200\n{}\n'
-KINDS = {"corexy": ('kinematics = "corexy"\n', ""), "ganged": ("", "motors = 2")}
+SQUARING = 'motors = 2\nhome = "high"\nswitches = ["limit_high"]\noffsets = [0, 0.3]'
+KINDS = {
+    "corexy": ('kinematics = "corexy"\n', ""),
+    "ganged": ("", "motors = 2"),
+    "gantry": ("[home]\nracking = 0.6\npull_off = 0.5\n", SQUARING),
+}
+
+
+def assert_settings(board: GrblBoard, machine: MachineFile) -> None:
+    """Those of `passo make` are taken in their order, twice, and kept; offsets are within the pull-off."""
+    offsets = ["$170=0.000", "$171=0.000", "$172=0.000", "$173=0.300"] if machine.squared else []
+    for line in (*settings_lines(machine), *settings_lines(machine)):
+        assert board.line(line, 5) == "ok", line
+    assert [line for line in board.line("$$").splitlines() if line.startswith("$17")] == offsets
+    for line in ("$173=0.501", "$27=0.2", "$27=0.61") if offsets else ("$170=0", "$173=0.1"):
+        assert board.line(line, 5).endswith("error:3")
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -31,6 +46,7 @@ def test_lines_of_axes_move_motors(kind: str, tmp_path: Path) -> None:
     elf = grbl_elf(paths.build / "tests" / f"firmware_motors_{kind}", *given, image=LARGE_IMAGE)
     with machine_at("model", machine) as engine:
         board = GrblBoard(engine, elf)
+        board.line("$X")
         for line in ("G0 X2 Y1", "G1 X1 Y3 Z0.1 F3000", "G4 P0.01"):
             assert board.line(line, 5) == "ok"
         rows = machine.settings.motors.map(3)
@@ -41,6 +57,7 @@ def test_lines_of_axes_move_motors(kind: str, tmp_path: Path) -> None:
             back = events["dir"][rising].astype(np.int64) >> motor & 1
             assert int((1 - 2 * back).sum()) == place
         assert not board.faults
+        assert_settings(board, machine)
     with model_engine(replace(core_for(machine), axes=len(rows) - 1), machine.clock_hz) as engine:
         small = Machine(elf, engine)
         small.run(0.5)

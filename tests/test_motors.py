@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from passo.cli import main
 from passo.failure import BadInputError
-from passo.grbl_setup import attach, core_for, machine_at
+from passo.grbl_setup import SettingsFile, attach, core_for, machine_at
 from passo.machine_check import check_machine
 from passo.machine_file import MachineFile, read_machine
-from passo.make_command import definitions
+from passo.make_command import definitions, settings_lines
 from passo.run import open_engine
 from passo.toolchain import paths
 
@@ -207,6 +207,71 @@ def test_home_squares_a_gantry_that_starts_skewed(tmp_path: Path, skew: int, off
             assert ends == pytest.approx([80 * y, 80 * (y - offset)], abs=1)
 
 
+def test_offsets_are_settings(tmp_path: Path) -> None:
+    """Signed, of each motor, stored; within the pull-off, and that within the bound."""
+    machine = squaring(tmp_path, "offsets = [0, 0.25]")
+    kept = SettingsFile(tmp_path / "settings")
+    with open_engine("model", core_for(machine), machine.clock_hz) as engine:
+        ((library, rig),) = attach(engine, machine, {3: 40})
+        session = GrblConsole(engine, machine, kept)
+        session.limit(60)
+        asked = session.line("$$").splitlines()
+        assert [line for line in asked if line.startswith("$17")] == [
+            "$170=0.000", "$171=0.000", "$172=0.000", "$173=0.250",
+        ]  # fmt: skip
+        refused = "[MSG:$27 is at most the racking, $170 and up at most $27 where motors square]"
+        for line in ("$173=1.01", "$173=-1.01", "$171=2", "$172=0.1", "$27=3.1", "$27=0.2"):
+            assert refused in session.line(line) and session.answers[-1] == "error:3"
+        for line in ("$174=0", "$173=1001"):
+            assert session.line(line) == "error:3"
+        assert session.line("$131=-1") == "error:4"
+        assert session.line("$173=-0.75") == session.line("$171=0.125") == "ok"
+        assert session.line("$H").endswith("ok")
+        session.line("G53 G0 Y-4")
+        session.rest()
+        ends = [library.passo_rig_position(rig, motor) - 80 * 20 for motor in (1, 3)]
+        assert ends == pytest.approx([80 * -4.125, 80 * -3.25], abs=1)
+    with machine_at("model", machine) as engine:
+        session = GrblConsole(engine, machine, kept)
+        session.limit(60)
+        assert {"$171=0.125", "$173=-0.750"} < set(session.line("$$").splitlines())
+        session.line("$RST=$")
+        session.run(0.1)
+        assert {"$171=0.000", "$173=0.250"} < set(session.line("$$").splitlines())
+    with machine_at("model", machine_of(tmp_path, **LIMITS)) as engine:  # does not square
+        session = GrblConsole(engine, machine_of(tmp_path, **LIMITS))
+        assert session.line("$170=0").endswith("error:3") and "$170" not in session.line("$$")
+
+
+def test_positions_of_motors(session: GrblConsole) -> None:
+    """`$#` shows them beside those of the axes."""
+    session.line("$X")
+    session.line("G91 G0 X4 Y-1.5 Z0.25")
+    session.rest()
+    (shown,) = re.findall(r"\[MOTORS:(.*)\]", session.line("$#"))
+    rows = session.grbl.machine.settings.motors.map(3)
+    assert [float(place) for place in shown.split(",")] == (rows @ [4, -1.5, 0.25]).tolist()
+
+
+def test_an_alarm_of_one_motor_stops_all(tmp_path: Path) -> None:
+    """Of a ganged axis, in a move, on one clock; the machine is not homed any more."""
+    machine = machine_of(tmp_path, **GANGED)
+    with machine_at("model", machine) as engine:
+        session = GrblConsole(engine, machine)
+        session.limit(60)
+        session.line("$X")
+        session.send(b"G91 G1 Y8 F3000\n", 0.1)
+        engine.set("alarm", 8)
+        events = [engine.drain()]
+        session.run(0.2)
+        events = np.concatenate([*events, engine.drain()])
+        one, other = (session.grbl.player.feed.driver.positions()[motor] for motor in (1, 3))
+        assert 0 < one == other < 640
+        steps = events["step"].astype(np.int64)
+        assert ((steps >> 1 & 1) == (steps >> 3 & 1)).all()
+        assert "ALARM:3" in session.log and session.status()["state"] == "Alarm"
+
+
 @pytest.mark.parametrize(("skew", "name"), [(-300, "Y2"), (300, "Y")])
 def test_a_gantry_that_is_too_skewed(tmp_path: Path, skew: int, name: str) -> None:
     """The error names the motor and the distance, and the machine stays locked."""
@@ -260,7 +325,9 @@ def test_a_machine_with_a_board(tmp_path: Path, capsys: pytest.CaptureFixture[st
     i = gantry.index('name = "Y"')
     path.write_text(gantry[:i] + gantry[i:].replace('["home"]', '["limit_low"]', 1))
     made = definitions(read_machine(path))
-    assert (made["SQUARED"], made["RACKING"], made["OFFSETS"]) == (2, 4000, "0,0,0,-120")
+    assert (made["SQUARED"], made["RACKING"]) == (2, 4000)
+    lines = settings_lines(read_machine(path))
+    assert lines.index("$173=0") < lines.index("$27=1") < lines.index("$173=-0.12") and "$170=0" in lines
     path.write_text(text.replace("[switches]", 'kinematics = "corexy"\n[motors]\nspeed = 200\n[switches]'))
     made = definitions(read_machine(path))
     assert (made["MOTORS_PLUS"], made["MOTORS_MINUS"], made["MOTORS_SPEED"]) == (0x040103, 0x0200, 200)

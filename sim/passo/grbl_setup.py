@@ -34,13 +34,19 @@ TOUCH = {"TOUCH_DISTANCE": 30, "TOUCH_FEED": 25, "TOUCH_SEEK": 200, "TOUCH_PULL_
 PROBED = 3  # the probe is at Z
 
 
+def setting_counts(machine: MachineFile) -> Any:
+    """The `struct passo_grbl_counts` of a machine."""
+    offsets = len(machine.motors) if machine.squared else 0
+    return ffi().new("struct passo_grbl_counts *", {"axes": len(machine.ends), "offsets": offsets})[0]
+
+
 def _millionths(
     machine: MachineFile, key: str, index: int, given: float, factor: int, most: float = INFINITE
 ) -> int:
     """A setting of a key of the file; refuses what `$n=` would refuse."""
-    axes, whole, positive = len(machine.ends), ffi().new("bool *"), ffi().new("bool *")
-    number = planner().passo_grbl_setting_number(index, axes, whole)
-    most = min(most, planner().passo_grbl_setting_most(number, axes, positive) / factor)
+    counts, whole, positive = setting_counts(machine), ffi().new("bool *"), ffi().new("bool *")
+    number = planner().passo_grbl_setting_number(index, counts, whole)
+    most = min(most, planner().passo_grbl_setting_most(number, counts, positive) / factor)
     value = round(given * factor * MILLION)
     if given > most or (positive[0] and value == 0):
         least = "more than 0 and at most" if positive[0] else "0 to"
@@ -104,6 +110,7 @@ def default_settings(machine: MachineFile) -> Any:
             setting = getattr(c, f"PASSO_GRBL_{name}")
             index = c.PASSO_GRBL_SETTINGS + setting * len(ends) + axis
             made.axis[setting][axis] = _millionths(machine, f"axis {axis + 1}: {key}", index, given, factor)
+    made.axis[c.PASSO_GRBL_OFFSET][0 : len(machine.offsets)] = machine.offsets
     return made
 
 
@@ -128,7 +135,6 @@ def setup_of(machine: MachineFile, parameters: Parameters, defaults: Any, pages:
         made.homed |= (end.home is not None) << axis
     made.squared = sum(1 << axis for axis in machine.squared)
     made.racking = round(machine.switches.racking * 1000)
-    made.offset[0 : len(machine.offsets)] = machine.offsets
     made.probe, made.pages = machine.switches.probe, pages
     return made
 

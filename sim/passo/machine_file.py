@@ -133,11 +133,11 @@ class MachineFile:
 
     @property
     def offsets(self) -> list[int]:
-        """Of each motor: its edge from that of its axis, um."""
+        """Of each motor: its edge from that of its axis, nm."""
         found = [0] * len(self.motors)
         for axis in self.squared:
             for motor, offset in zip(self.motors_of(axis), self.ends[axis].offsets, strict=False):
-                found[motor] = round(offset * 1000)
+                found[motor] = round(offset * 1_000_000)
         return found
 
     def motors_of(self, axis: int) -> list[int]:

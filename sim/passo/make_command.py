@@ -22,7 +22,7 @@ from passo.console import stages
 from passo.drives import drives
 from passo.failure import BadInputError, Failure
 from passo.gcode import AXIS_LETTERS
-from passo.grbl_setup import MILLION, default_settings
+from passo.grbl_setup import MILLION, default_settings, setting_counts
 from passo.machine_file import CHIPS, MOTOR_KEYS, MachineFile, read_machine
 from passo.machine_sheet import Sheet, Wire, draw, page
 from passo.native import ffi, planner
@@ -41,7 +41,7 @@ IMAGE = {SMALL: SMALL_IMAGE, LARGE: LARGE_IMAGE}
 NOT_BUILT = "  no images: --no-build"
 FAILED_BITSTREAM = "  bitstream  NONE: see above"
 SPI_MHZ = (18, 9)  # of the firmware: the fastest that a core can take, which is a quarter of its clock
-SPEED_AT = 110  # first setting of the speeds
+SPEED_AT, OFFSET_AT = 110, 170  # first settings of the speeds and of the offsets
 LARGE_AT = 342  # first of those that only the large chip has
 NO_SETTING = 0xFF
 REVERSE = 1  # the output that a laser does not have
@@ -148,24 +148,27 @@ def _images(machine: MachineFile, chosen: Board, path: Path) -> Iterator[str]:
 
 
 def _text(millionths: int) -> str:
-    whole, rest = divmod(millionths, MILLION)
-    return f"{whole}.{rest:06}".rstrip("0").rstrip(".")
+    whole, rest = divmod(abs(millionths), MILLION)
+    return "-" * (millionths < 0) + f"{whole}.{rest:06}".rstrip("0").rstrip(".")
 
 
 def settings_lines(machine: MachineFile) -> list[str]:
-    """`$n=` of all settings. No line needs a later one: speeds are low until the pins have their times."""
-    c, axes = planner(), len(machine.settings.axes)
+    """`$n=` of all settings. No line needs a later one: speeds are low until the pins have their times,
+    offsets are 0 until there is a pull-off."""
+    c, axes, counts = planner(), len(machine.settings.axes), setting_counts(machine)
     made, whole = default_settings(machine), ffi().new("bool *")
     values = {}
-    while (number := c.passo_grbl_setting_number(len(values), axes, whole)) != NO_SETTING:
-        values[number] = c.passo_grbl_setting(made, number, axes)[0]
+    while (number := c.passo_grbl_setting_number(len(values), counts, whole)) != NO_SETTING:
+        values[number] = c.passo_grbl_setting(made, number, counts)[0]
     if machine.chip == SMALL:
         values = {number: value for number, value in values.items() if number < LARGE_AT}
     speeds = range(SPEED_AT, SPEED_AT + axes)
+    offsets = range(OFFSET_AT, OFFSET_AT + len(machine.motors))
     homing = 22  # before soft limits
     order = sorted(values, key=lambda number: (number in speeds, number != homing, number))
     return [
         *(f"${number}=1" for number in speeds),
+        *(f"${number}=0" for number in values if number in offsets),
         *(f"${number}={_text(values[number])}" for number in order),
     ]
 
@@ -264,7 +267,6 @@ def _squares(machine: MachineFile) -> dict[str, Any]:
     return {
         "SQUARED": sum(1 << axis for axis in machine.squared),
         "RACKING": round(machine.switches.racking * 1000),
-        "OFFSETS": ",".join(map(str, machine.offsets)),
     }
 
 

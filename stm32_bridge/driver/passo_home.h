@@ -35,8 +35,8 @@ struct passo_home {
 #endif
 	enum passo_trigger_source source; /* HOME, LIMIT_LOW or LIMIT_HIGH */
 	int32_t distance;                 /* longest travel to the switch, steps; the sign is the direction */
-	uint32_t back_off;          /* steps from the edge before the slow approach: above its hysteresis */
-	uint32_t pull_off;          /* steps from the edge at the end; 0: the axis stays where it stops */
+	uint32_t back_off; /* steps from the edge before the slow approach: above hysteresis and filter */
+	uint32_t pull_off; /* steps from the edge at the end; 0: the axis stays where it stops */
 	uint64_t speed, slow_speed; /* UQ32.32 steps/s */
 	uint64_t acceleration;      /* UQ32.32 steps/s^2 */
 	int32_t position;           /* of the edge */

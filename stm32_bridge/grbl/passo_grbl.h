@@ -50,9 +50,8 @@ struct passo_grbl_setup {
 	uint8_t limits_low, limits_high, homes; /* fitted switches */
 	uint8_t homed; /* axes that home; without a home switch on their limit switch */
 #ifndef PASSO_CARTESIAN
-	uint8_t squared; /* of these, axes each of whose motors has its own limit switch at that end */
-	int32_t racking; /* um: see passo_home.h */
-	int32_t offset[PASSO_AXES_MAX]; /* of motors, um: see passo_home.h */
+	uint8_t squared;  /* of these, axes each of whose motors has its own limit switch at that end */
+	uint32_t racking; /* um: see passo_home.h */
 #endif
 	bool probe;                              /* a probe is fitted */
 	const struct passo_storage_pages *pages; /* null: no persistent storage */

@@ -37,6 +37,27 @@ void passo_grbl_report_modes(struct passo_grbl *grbl)
 	passo_grbl_say(grbl, "]\r\n");
 }
 
+#ifndef PASSO_CARTESIAN
+/* Where the motors are, which the axes do not tell. */
+static void report_motors(struct passo_grbl *grbl)
+{
+	const struct passo_motors *motors = &grbl->path.motors;
+	int32_t steps[PASSO_AXES_MAX] = {0};
+
+	if (motors->count == 0)
+		return;
+	passo_positions(grbl->player->feed->passo, steps);
+	for (unsigned motor = 0; motor < motors->count; motor++) {
+		const unsigned axis = passo_motor_axis(motors, motor);
+
+		passo_grbl_say(grbl, motor > 0 ? "," : "[MOTORS:");
+		passo_grbl_say_length(
+		    grbl, passo_player_length(steps[motor], grbl->path.axis[axis].steps_per_mm));
+	}
+	passo_grbl_say(grbl, "]\r\n");
+}
+#endif
+
 void passo_grbl_report_offsets(struct passo_grbl *grbl)
 {
 	static const char *const SYSTEMS[] = {"[G54", "[G55", "[G56", "[G57", "[G58", "[G59"};
@@ -57,6 +78,9 @@ void passo_grbl_report_offsets(struct passo_grbl *grbl)
 	passo_grbl_say_length(grbl, gcode->tool_length);
 	passo_grbl_say(grbl, "]\r\n");
 	passo_grbl_report_probe(grbl);
+#ifndef PASSO_CARTESIAN
+	report_motors(grbl);
+#endif
 #ifndef PASSO_PLAIN_GCODE
 	if (grbl->measured) {
 		passo_grbl_say(grbl, "[TLR:");
@@ -65,6 +89,13 @@ void passo_grbl_report_offsets(struct passo_grbl *grbl)
 	}
 #endif
 }
+
+/* Of an image that has no other machines. */
+#ifdef PASSO_CARTESIAN
+#define KINEMATICS "[KINEMATICS:Cartesian]\r\n"
+#else
+#define KINEMATICS ""
+#endif
 
 /* Versions of the firmware and of the core; its clock in Hz and its build. */
 void passo_grbl_report_build(struct passo_grbl *grbl)
@@ -76,7 +107,7 @@ void passo_grbl_report_build(struct passo_grbl *grbl)
 	    grbl->player->feed->passo->host, PASSO_ADDRESS_VERSION, words, sizeof words / sizeof *words);
 	passo_grbl_say(grbl, "[VER:1.1h.passo:]\r\n[OPT:VNM,");
 	passo_grbl_say_number(grbl, grbl->player->feed->path->capacity);
-	passo_grbl_say(grbl, ",255]\r\n[FIRMWARE:Passo " PASSO_RELEASE "]\r\n[CORE:");
+	passo_grbl_say(grbl, ",255]\r\n[FIRMWARE:Passo " PASSO_RELEASE "]\r\n" KINEMATICS "[CORE:");
 	for (unsigned bit = PASSO_VERSION_MAJOR_LSB + 8u; bit > 0; bit -= 8u) {
 		passo_grbl_say_number(grbl, words[0] >> (bit - 8u) & 0xFFu);
 		passo_grbl_say(grbl, bit > 8u ? "." : ":");
@@ -95,13 +126,13 @@ void passo_grbl_report_probe(struct passo_grbl *grbl)
 
 void passo_grbl_report_settings(struct passo_grbl *grbl)
 {
-	const unsigned axes = grbl->path.machine.axes;
+	const struct passo_grbl_counts counts = passo_grbl_counts(grbl);
 	unsigned number;
 	bool whole;
 
-	for (unsigned i = 0; (number = passo_grbl_setting_number(i, axes, &whole)) != PASSO_GRBL_NO_SETTING;
+	for (unsigned i = 0; (number = passo_grbl_setting_number(i, counts, &whole)) != PASSO_GRBL_NO_SETTING;
 	    i++) {
-		const int64_t value = *passo_grbl_setting(&grbl->stored.settings, number, axes);
+		const int64_t value = *passo_grbl_setting(&grbl->stored.settings, number, counts);
 
 		passo_grbl_say(grbl, "$");
 		passo_grbl_say_number(grbl, number);

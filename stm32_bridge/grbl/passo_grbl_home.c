@@ -5,6 +5,7 @@
 #include "passo_math.h"
 
 #define MILLION ((uint64_t)PASSO_GCODE_MILLION)
+#define MILLI UINT64_C(1000)
 #define SECONDS_PER_MINUTE 60u
 
 /* Steps of millionths of a millimeter; UQ32.32 steps/s of millionths of mm/min. */
@@ -43,18 +44,15 @@ static bool squares(const struct passo_grbl *grbl, unsigned axis)
 	return (grbl->setup->squared >> axis & 1) != 0;
 }
 
-static int32_t steps_of_um(const struct passo_grbl *grbl, unsigned axis, int32_t length)
-{
-	const int32_t size = steps_of(grbl, axis, (uint64_t)(length < 0 ? -(int64_t)length : length) * 1000u);
-
-	return length < 0 ? -size : size;
-}
-
 static void set_offsets(struct passo_grbl *grbl)
 {
-	for (unsigned motor = 0; motor < passo_grbl_motors(grbl); motor++)
-		grbl->offset[motor] =
-		    steps_of_um(grbl, passo_grbl_axis_of(grbl, motor), grbl->setup->offset[motor]);
+	for (unsigned motor = 0; motor < passo_grbl_motors(grbl); motor++) {
+		const int64_t offset = grbl->stored.settings.axis[PASSO_GRBL_OFFSET][motor];
+		const int32_t size = steps_of(
+		    grbl, passo_grbl_axis_of(grbl, motor), (uint64_t)(offset < 0 ? -offset : offset));
+
+		grbl->offset[motor] = offset < 0 ? -size : size;
+	}
 }
 
 /* The motor that did not reach its switch within the bound. */
@@ -72,7 +70,7 @@ static void tell_skewed(struct passo_grbl *grbl)
 			passo_grbl_say_number(grbl, number);
 	}
 	passo_grbl_say(grbl, ": no switch within ");
-	passo_grbl_say_thousandths(grbl, grbl->setup->racking * INT64_C(1000));
+	passo_grbl_say_thousandths(grbl, (int64_t)(grbl->setup->racking * MILLI));
 	passo_grbl_say(grbl, " mm]\r\n");
 }
 #endif
@@ -90,7 +88,8 @@ static struct passo_home home_of(const struct passo_grbl *grbl, uint8_t axis)
 #ifndef PASSO_CARTESIAN
 	    .forward = motors_along(grbl, axis, false),
 	    .backward = motors_along(grbl, axis, true),
-	    .racking = squares(grbl, axis) ? (uint32_t)steps_of_um(grbl, axis, grbl->setup->racking) : 0u,
+	    .racking =
+		squares(grbl, axis) ? (uint32_t)steps_of(grbl, axis, grbl->setup->racking * MILLI) : 0u,
 	    .offset = grbl->offset,
 #endif
 	    .source = grbl->setup->homes >> axis & 1u ? PASSO_TRIGGER_SOURCE_HOME

@@ -216,6 +216,34 @@ static void apply_travel(struct passo_grbl *grbl)
 	grbl->player->machine = &grbl->limits;
 }
 
+#ifdef PASSO_CARTESIAN
+static bool can_square(struct passo_grbl *grbl)
+{
+	(void)grbl;
+	return true;
+}
+#else
+/* Motors that square leave their switches within the bound, whatever their offsets. */
+static bool can_square(struct passo_grbl *grbl)
+{
+	const struct passo_grbl_settings *settings = &grbl->stored.settings;
+	const int64_t pull_off = settings->value[PASSO_GRBL_PULL_OFF];
+	bool can = grbl->setup->squared == 0 || pull_off <= grbl->setup->racking * INT64_C(1000);
+
+	for (unsigned motor = 0; motor < passo_grbl_motors(grbl); motor++) {
+		const bool squares = (grbl->setup->squared >> passo_grbl_axis_of(grbl, motor) & 1) != 0;
+		const int64_t offset = settings->axis[PASSO_GRBL_OFFSET][motor],
+			      most = squares ? pull_off : 0;
+
+		can = can && offset <= most && -offset <= most;
+	}
+	if (!can)
+		passo_grbl_say(grbl,
+		    "[MSG:$27 is at most the racking, $170 and up at most $27 where motors square]\r\n");
+	return can;
+}
+#endif
+
 enum passo_gcode_error passo_grbl_apply(struct passo_grbl *grbl)
 {
 	const struct passo_grbl_settings *settings = &grbl->stored.settings;
@@ -228,6 +256,8 @@ enum passo_gcode_error passo_grbl_apply(struct passo_grbl *grbl)
 	    of_plan(passo_path_open(path, &grbl->path, path->items, path->capacity));
 	if (planned != PASSO_GCODE_OK)
 		return planned;
+	if (!can_square(grbl))
+		return PASSO_GCODE_STATEMENT;
 	const enum passo_gcode_error pins = check_pins(grbl, timing);
 	if (pins != PASSO_GCODE_OK)
 		return pins;

@@ -52,6 +52,15 @@ static inline unsigned passo_grbl_motors(const struct passo_grbl *grbl)
 	return grbl->path.machine.axes;
 }
 
+static inline struct passo_grbl_counts passo_grbl_counts(const struct passo_grbl *grbl)
+{
+	return (struct passo_grbl_counts){.axes = grbl->setup->path.machine.axes,
+#ifndef PASSO_CARTESIAN
+	    .offsets = grbl->setup->squared != 0 ? grbl->setup->path.motors.count : 0
+#endif
+	};
+}
+
 /* The axis that a motor is named after. */
 static inline unsigned passo_grbl_axis_of(const struct passo_grbl *grbl, unsigned motor)
 {

@@ -53,24 +53,48 @@ static const struct kind AXIS_KINDS[PASSO_GRBL_AXIS_SETTINGS] = {
 #ifndef PASSO_LINEAR_PATHS
     [PASSO_GRBL_JERK] = {800, false, false, 999999999},
 #endif
+#ifndef PASSO_CARTESIAN
+    [PASSO_GRBL_OFFSET] = {170, false, false, 1000},
+#endif
 };
 
-static const struct kind *find(unsigned number, unsigned axes)
+static bool is_signed(const struct kind *kind)
+{
+#ifndef PASSO_CARTESIAN
+	return kind == &AXIS_KINDS[PASSO_GRBL_OFFSET];
+#else
+	(void)kind;
+	return false;
+#endif
+}
+
+static unsigned count_of(const struct kind *kind, struct passo_grbl_counts counts)
+{
+#ifndef PASSO_CARTESIAN
+	if (is_signed(kind))
+		return counts.offsets;
+#endif
+	(void)kind;
+	return counts.axes;
+}
+
+static const struct kind *find(unsigned number, struct passo_grbl_counts counts)
 {
 	for (unsigned i = 0; i < PASSO_GRBL_SETTINGS; i++) {
 		if (KINDS[i].number == number)
 			return &KINDS[i];
 	}
 	for (unsigned i = 0; i < PASSO_GRBL_AXIS_SETTINGS; i++) {
-		if (number - AXIS_KINDS[i].number < axes)
+		if (number - AXIS_KINDS[i].number < count_of(&AXIS_KINDS[i], counts))
 			return &AXIS_KINDS[i];
 	}
 	return NULL;
 }
 
-int64_t *passo_grbl_setting(struct passo_grbl_settings *settings, unsigned number, unsigned axes)
+int64_t *passo_grbl_setting(
+    struct passo_grbl_settings *settings, unsigned number, struct passo_grbl_counts counts)
 {
-	const struct kind *kind = find(number, axes);
+	const struct kind *kind = find(number, counts);
 
 	if (!kind)
 		return NULL;
@@ -79,15 +103,15 @@ int64_t *passo_grbl_setting(struct passo_grbl_settings *settings, unsigned numbe
 	         : &settings->axis[kind - AXIS_KINDS][number - kind->number];
 }
 
-uint32_t passo_grbl_setting_most(unsigned number, unsigned axes, bool *positive)
+uint32_t passo_grbl_setting_most(unsigned number, struct passo_grbl_counts counts, bool *positive)
 {
-	const struct kind *kind = find(number, axes);
+	const struct kind *kind = find(number, counts);
 
 	*positive = kind && kind->positive;
 	return kind ? kind->most : 0;
 }
 
-unsigned passo_grbl_setting_number(unsigned index, unsigned axes, bool *whole)
+unsigned passo_grbl_setting_number(unsigned index, struct passo_grbl_counts counts, bool *whole)
 {
 	if (index < PASSO_GRBL_SETTINGS) {
 		*whole = KINDS[index].whole;
@@ -95,8 +119,14 @@ unsigned passo_grbl_setting_number(unsigned index, unsigned axes, bool *whole)
 	}
 	index -= PASSO_GRBL_SETTINGS;
 	*whole = false;
-	return index < PASSO_GRBL_AXIS_SETTINGS * axes ? AXIS_KINDS[index / axes].number + index % axes
-	                                               : PASSO_GRBL_NO_SETTING;
+	for (unsigned i = 0; i < PASSO_GRBL_AXIS_SETTINGS; i++) {
+		const unsigned count = count_of(&AXIS_KINDS[i], counts);
+
+		if (index < count)
+			return AXIS_KINDS[i].number + index;
+		index -= count;
+	}
+	return PASSO_GRBL_NO_SETTING;
 }
 
 bool passo_grbl_is_on(const struct passo_grbl_settings *settings, enum passo_grbl_setting setting)
@@ -111,24 +141,27 @@ bool passo_grbl_has_axis(
 }
 
 enum passo_gcode_error passo_grbl_set(
-    struct passo_grbl_settings *settings, unsigned number, unsigned axes, int64_t value)
+    struct passo_grbl_settings *settings, unsigned number, struct passo_grbl_counts counts, int64_t value)
 {
-	const struct kind *kind = find(number, axes);
+	const struct kind *kind = find(number, counts);
 
 	if (!kind)
 		return PASSO_GCODE_STATEMENT;
-	if (value < 0)
+	const bool minus = is_signed(kind) && value < 0;
+	const int64_t size = minus ? -value : value;
+
+	if (size < 0)
 		return PASSO_GCODE_NEGATIVE;
 	if (kind->whole && value % PASSO_GCODE_MILLION != 0)
 		return PASSO_GCODE_NUMBER;
 	if (kind == &KINDS[PASSO_GRBL_PULSE] && value == 0)
 		return PASSO_GCODE_PULSE_TOO_SHORT;
-	if (value > kind->most * (int64_t)PASSO_GCODE_MILLION || (kind->positive && value == 0))
+	if (size > kind->most * (int64_t)PASSO_GCODE_MILLION || (kind->positive && value == 0))
 		return PASSO_GCODE_STATEMENT;
 	if (kind == &KINDS[PASSO_GRBL_SOFT_LIMITS] && value != 0
 	    && !passo_grbl_is_on(settings, PASSO_GRBL_HOMING))
 		return PASSO_GCODE_SOFT_LIMITS_NEED_HOMING;
-	*passo_grbl_setting(settings, number, axes) = value;
+	*passo_grbl_setting(settings, number, counts) = value;
 	if (!passo_grbl_is_on(settings, PASSO_GRBL_HOMING))
 		settings->value[PASSO_GRBL_SOFT_LIMITS] = 0;
 	return PASSO_GCODE_OK;

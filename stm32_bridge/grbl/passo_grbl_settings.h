@@ -52,6 +52,9 @@ enum passo_grbl_axis_setting {
 #ifndef PASSO_LINEAR_PATHS
 	PASSO_GRBL_JERK, /* $800: mm/s^3; profile jerk if no axis has 0, else not */
 #endif
+#ifndef PASSO_CARTESIAN
+	PASSO_GRBL_OFFSET, /* $170, of motors that square: mm, the edge from that of the axis; signed */
+#endif
 	PASSO_GRBL_AXIS_SETTINGS
 };
 
@@ -70,20 +73,29 @@ struct passo_grbl_stored {
 /* Its size in storage, in words. */
 #define PASSO_GRBL_STORED_WORDS (sizeof(struct passo_grbl_stored) / sizeof(uint32_t))
 
-/* The value of `$n`; null: no such setting for this number of axes. */
-int64_t *passo_grbl_setting(struct passo_grbl_settings *settings, unsigned number, unsigned axes);
+/* How many settings of a kind there are. */
+struct passo_grbl_counts {
+	uint8_t axes;
+#ifndef PASSO_CARTESIAN
+	uint8_t offsets; /* motors of a machine that squares; else 0 */
+#endif
+};
+
+/* The value of `$n`; null: this machine has no such setting. */
+int64_t *passo_grbl_setting(
+    struct passo_grbl_settings *settings, unsigned number, struct passo_grbl_counts counts);
 
 /* Sets `$n` to a number in millionths. Errors: STATEMENT (no such setting, out of range), NEGATIVE, NUMBER
  * (not whole), PULSE_TOO_SHORT, SOFT_LIMITS_NEED_HOMING. */
 enum passo_gcode_error passo_grbl_set(
-    struct passo_grbl_settings *settings, unsigned number, unsigned axes, int64_t value);
+    struct passo_grbl_settings *settings, unsigned number, struct passo_grbl_counts counts, int64_t value);
 
 /* Largest value of `$n`, and whether 0 is none. */
-uint32_t passo_grbl_setting_most(unsigned number, unsigned axes, bool *positive);
+uint32_t passo_grbl_setting_most(unsigned number, struct passo_grbl_counts counts, bool *positive);
 
 /* The settings in the order of their numbers: the number of each, and whether it is whole; 0xFF: no more. */
 #define PASSO_GRBL_NO_SETTING 0xFFu
-unsigned passo_grbl_setting_number(unsigned index, unsigned axes, bool *whole);
+unsigned passo_grbl_setting_number(unsigned index, struct passo_grbl_counts counts, bool *whole);
 
 /* Whether the bit of an axis is set in a mask setting. */
 bool passo_grbl_has_axis(

@@ -13,18 +13,18 @@ static void set_defaults(struct passo_grbl *grbl)
 /* Another number of axes, or a record of which the values make no sense here, gives the defaults. */
 static bool is_possible(struct passo_grbl *grbl)
 {
-	const unsigned axes = grbl->path.machine.axes;
+	const struct passo_grbl_counts counts = passo_grbl_counts(grbl);
 	struct passo_grbl_settings trial;
 	unsigned number;
 	bool whole;
 
 	grbl->setup->defaults(&trial);
 	trial.value[PASSO_GRBL_HOMING] = grbl->stored.settings.value[PASSO_GRBL_HOMING];
-	for (unsigned i = 0; (number = passo_grbl_setting_number(i, axes, &whole)) != PASSO_GRBL_NO_SETTING;
+	for (unsigned i = 0; (number = passo_grbl_setting_number(i, counts, &whole)) != PASSO_GRBL_NO_SETTING;
 	    i++) {
-		const int64_t value = *passo_grbl_setting(&grbl->stored.settings, number, axes);
+		const int64_t value = *passo_grbl_setting(&grbl->stored.settings, number, counts);
 
-		if (passo_grbl_set(&trial, number, axes, value) != PASSO_GCODE_OK)
+		if (passo_grbl_set(&trial, number, counts, value) != PASSO_GCODE_OK)
 			return false;
 	}
 	for (unsigned i = 0; i < PASSO_GRBL_STARTS; i++)
@@ -101,7 +101,7 @@ static enum passo_gcode_error change_setting(struct passo_grbl *grbl, unsigned n
 {
 	const struct passo_grbl_settings before = grbl->stored.settings;
 	enum passo_gcode_error error =
-	    passo_grbl_set(&grbl->stored.settings, number, grbl->path.machine.axes, value);
+	    passo_grbl_set(&grbl->stored.settings, number, passo_grbl_counts(grbl), value);
 
 	if (error == PASSO_GCODE_OK)
 		error = passo_grbl_apply(grbl);

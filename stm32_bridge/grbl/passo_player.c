@@ -118,17 +118,22 @@ uint64_t passo_player_magnitude(int64_t value)
 	return value < 0 ? 0 - (uint64_t)value : (uint64_t)value;
 }
 
+int64_t passo_player_length(int64_t steps, uint64_t scale)
+{
+	const uint64_t twice =
+	    passo_mul_div(passo_player_magnitude(steps) * PASSO_GCODE_MILLION, UINT64_C(1) << 33, scale);
+	const int64_t size = (int64_t)((twice + 1) / 2);
+
+	return steps < 0 ? -size : size;
+}
+
 void passo_player_place(const struct passo_player *player, const int32_t *motors, passo_gcode_position place)
 {
 	for (unsigned axis = 0; axis < player->gcode->settings.axes; axis++) {
 		uint32_t parts = 1;
 		const int64_t sum = passo_path_axis_place(player->feed->path, axis, motors, &parts);
-		const uint64_t scale = player->machine->axis[axis].steps_per_mm * parts; /* UQ32.32 */
-		const uint64_t twice = passo_mul_div(
-		    passo_player_magnitude(sum) * PASSO_GCODE_MILLION, UINT64_C(1) << 33, scale);
-		const int64_t size = (int64_t)((twice + 1) / 2);
 
-		place[axis] = sum < 0 ? -size : size;
+		place[axis] = passo_player_length(sum, player->machine->axis[axis].steps_per_mm * parts);
 	}
 }
 

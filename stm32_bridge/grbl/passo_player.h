@@ -127,6 +127,8 @@ uint64_t passo_player_speed(const struct passo_player *player);
  * core. One frame. Errors: those of passo_positions(). */
 enum passo_error passo_player_restart(struct passo_player *player);
 
+/* Nanometers, to nearest, of steps at a scale in steps per mm, UQ32.32. */
+int64_t passo_player_length(int64_t steps, uint64_t scale);
 /* Places of the axes, in nanometers to nearest, of positions of the motors in steps. */
 void passo_player_place(const struct passo_player *player, const int32_t *motors, passo_gcode_position place);
 

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 #include "grbl_machine.h"
 
-#include <string.h>
-
 #define POLLS 2000u   /* of the feed in a second, at least */
 #define RESERVES 200u /* in a second: the core has so much, however the lines come */
 
 #define MILLION ((int64_t)PASSO_GCODE_MILLION)
 #define AXES_USED (AXES > 0 ? AXES : GRBL_AXES_MAX)
 #define AXES_NEEDED (MOTORS > 0 ? MOTORS : AXES > 0 ? AXES : 1)
+#define UM_PER_MM 1000
 #define LINEAR_AXES 2u /* X and Y; Z and what follows are slow */
 
 static const uint16_t VALUES[PASSO_GRBL_SETTINGS] = {
@@ -50,6 +49,8 @@ static void grbl_defaults(struct passo_grbl_settings *settings)
 
 		settings->axis[setting][axis] = AXIS_VALUES[setting][axis >= LINEAR_AXES] * MILLION;
 	}
+	if (SQUARED != 0 && RACKING < UM_PER_MM) /* the pull-off is not more */
+		settings->value[PASSO_GRBL_PULL_OFF] = RACKING * MILLION / UM_PER_MM;
 }
 
 _Static_assert(AXES <= GRBL_AXES_MAX, "the image has fewer axes");
@@ -58,8 +59,6 @@ _Static_assert(MOTORS == 0, "the image has a motor for each axis");
 #else
 _Static_assert(
     MOTORS == 0 || (MOTORS >= AXES && MOTORS <= PASSO_PATH_AXES_MAX), "the image has fewer motors");
-
-static const int32_t offsets[PASSO_AXES_MAX] = {OFFSETS};
 
 static void set_motors(struct passo_path_settings *path)
 {
@@ -107,6 +106,5 @@ void grbl_machine(
 	set_motors(&setup->path);
 	setup->squared = SQUARED;
 	setup->racking = RACKING;
-	memcpy(setup->offset, offsets, sizeof offsets);
 #endif
 }

@@ -61,15 +61,12 @@
 #define MOTORS_JERK 0
 #endif
 
-/* Axes that `$H` squares, the most that their motors are apart, and offsets of the motors: um. */
+/* Axes that `$H` squares, and the most that their motors are apart, um. */
 #ifndef SQUARED
 #define SQUARED 0
 #endif
 #ifndef RACKING
 #define RACKING 0
-#endif
-#ifndef OFFSETS
-#define OFFSETS 0
 #endif
 
 /* Axes that `$H` homes, by their home or limit switch. */
