@@ -21,6 +21,8 @@ from passo_stm32.grbl_board import BOTH_IMAGE, GREETING, LARGE_IMAGE, SMALL_IMAG
 from passo_stm32.machine import Machine
 from passo_stm32.processor import FLASH
 
+from tests.helpers.grbl_outputs import check_outputs_at_rest
+
 HZ = 36_000_000  # of the core
 PARAMETERS = replace(parameters_for(4), clock_hz=HZ, inputs=1, outputs=1, encoders=1)
 CODE, SIZE, SETTINGS = 120 << 10, 128 << 10, 4 << 10
@@ -181,6 +183,11 @@ def test_grbl_has_jerk_and_more_axes(board: GrblBoard) -> None:
     assert board.line("$804=1") == "error:3" and board.line("$800=-1") == "error:4"
     board.restart()
     assert "$803=20000.000" in board.line("$$").splitlines()
+
+
+def test_outputs_at_rest(board: GrblBoard) -> None:
+    """As in the image for the small chip."""
+    check_outputs_at_rest(board)
 
 
 def test_a_tool_change(image: tuple[str, ...], board: GrblBoard) -> None:

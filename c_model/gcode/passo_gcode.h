@@ -20,7 +20,7 @@
 
 #define PASSO_GCODE_SYSTEMS 6u /* G54 .. G59 */
 
-/* Whether there is a tool change; without it a player changes no outputs at rest either. */
+/* Whether there is a tool change. */
 #ifdef PASSO_PLAIN_GCODE
 #define PASSO_GCODE_HAS_TOOLS false
 #else
