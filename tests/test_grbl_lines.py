@@ -149,7 +149,9 @@ def test_drives_that_rest(session: GrblConsole) -> None:
 
 def test_messages(session: GrblConsole) -> None:
     """`(MSG,...)`: when the motion before has ended, in order, before the answer of `M0`; 63 characters."""
-    session.send(b"(MSG, first)\nG1 X-10 F6000\n(msg,between)\nX-20\nM0 (a) ( Msg, Turn it ) ; (MSG,no)\n", 0.05)
+    session.send(
+        b"(MSG, first)\nG1 X-10 F6000\n(msg,between)\nX-20\nM0 (a) ( Msg, Turn it ) ; (MSG,no)\n", 0.05
+    )
     assert session.log.count("[MSG:first]") == 1
     while "[MSG:between]" not in session.log:
         assert -session.fields("MPos")[0] < 10.5
