@@ -45,7 +45,7 @@ static void act(struct passo_path_planner *path, struct passo_gcode *gcode,
 	if (action->kind == PASSO_GCODE_DWELL)
 		passo_path_dwell(path, action->microseconds);
 	if (action->kind == PASSO_GCODE_CHANGE) {
-		must(action->output == 0, "it turns", text);
+		must((action->output & ~PASSO_GCODE_OUTPUTS_DIGITAL) == 0, "it turns", text);
 		passo_gcode_load(gcode, action->tool);
 	}
 	if (action->kind != PASSO_GCODE_LINE)

@@ -74,10 +74,12 @@ static bool spins_up(const struct passo_player *player, uint8_t levels)
 	    && ((levels ^ player->levels) & (on | reverse));
 }
 
-/* What the program has on; while a tool is changed, nothing. */
+/* What the program has on; while a tool is changed, neither spindle nor coolant. */
 static uint32_t output_of(const struct passo_player *player, uint32_t output)
 {
-	return (PASSO_GCODE_HAS_TOOLS && player->changes) || !player->feed->passo->has_outputs ? 0u : output;
+	if (PASSO_GCODE_HAS_TOOLS && player->changes)
+		output &= PASSO_GCODE_OUTPUTS_DIGITAL;
+	return player->feed->passo->has_outputs ? output : 0u;
 }
 
 /* At rest. Error: MOVING, some pins still wait for their times. */
@@ -302,7 +304,8 @@ static enum passo_error take_action(struct passo_player *player, enum passo_play
 		*event = PASSO_PLAYER_OFFSETS;
 		break;
 	case PASSO_GCODE_OUTPUT: /* goes with the lines that follow */
-		if (spins_up(player, (uint8_t)(output_of(player, player->action.output) >> LEVELS_AT)))
+		if ((PASSO_GCODE_HAS_TOOLS && player->action.stops)
+		    || spins_up(player, (uint8_t)(output_of(player, player->action.output) >> LEVELS_AT)))
 			return take_at_rest(player, event);
 		break;
 	}
