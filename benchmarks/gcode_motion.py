@@ -4,7 +4,7 @@
 import math
 import sys
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 PLANES = {"XY": (0, 1, 2), "XZ": (2, 0, 1), "YZ": (1, 2, 0)}
 NOWHERE = 0.01  # mm; random lines are longer
@@ -12,17 +12,18 @@ NOWHERE = 0.01  # mm; random lines are longer
 
 @dataclass(frozen=True)
 class Outputs:
-    """Of spindle and coolant."""
+    """Of spindle, coolant, and M62 to M65."""
 
     turns: int = 0  # 1 clockwise, -1 the other way
     rpm: float = 0
     flood: bool = False
     mist: bool = False
+    digital: int = 0  # a bit for each P
 
     def differs(self, other: "Outputs") -> bool:
         """Speeds are those of a spindle that turns."""
         apart = self.turns != 0 and abs(self.rpm - other.rpm) > 0.02
-        return apart or (self.turns, self.flood, self.mist) != (other.turns, other.flood, other.mist)
+        return apart or replace(self, rpm=0) != replace(other, rpm=0)
 
 
 @dataclass(frozen=True)

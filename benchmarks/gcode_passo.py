@@ -13,6 +13,7 @@ from benchmarks.gcode_motion import PLANES, Motion, Outputs, Played, labelled
 SPEEDS = 1000  # rpm of full power
 POWER = 65535
 SPINDLE, REVERSE, FLOOD, MIST = (1 << bit for bit in (16, 17, 18, 19))
+DIGITAL_AT, DIGITALS = 20, 15
 
 
 class Passo:
@@ -70,7 +71,8 @@ def _tolerance(action: Any) -> float:
 
 def _outputs(word: int) -> Outputs:
     turns = (-1 if word & REVERSE else 1) if word & SPINDLE else 0
-    return Outputs(turns, (word & POWER) / POWER * SPEEDS, bool(word & FLOOD), bool(word & MIST))
+    rpm, digital = (word & POWER) / POWER * SPEEDS, word >> DIGITAL_AT & DIGITALS
+    return Outputs(turns, rpm, bool(word & FLOOD), bool(word & MIST), digital)
 
 
 def play_passo(program: Sequence[str]) -> Played:

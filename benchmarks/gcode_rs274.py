@@ -105,3 +105,7 @@ def _motions(calls: Sequence[str]) -> Iterator[Motion]:
                 outputs = replace(outputs, flood=name == "FLOOD_ON")
             case "MIST_ON" | "MIST_OFF":
                 outputs = replace(outputs, mist=name == "MIST_ON")
+            case "SET_MOTION_OUTPUT_BIT" | "SET_AUX_OUTPUT_BIT":
+                outputs = replace(outputs, digital=outputs.digital | 1 << int(numbers[0]))
+            case "CLEAR_MOTION_OUTPUT_BIT" | "CLEAR_AUX_OUTPUT_BIT":
+                outputs = replace(outputs, digital=outputs.digital & ~(1 << int(numbers[0])))

@@ -2,6 +2,7 @@
 """`passo expand`: parameters, expressions and O words as LinuxCNC has them, judged by its own interpreter."""
 
 import random
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,7 @@ from passo.cli import main
 from passo.expand.block import shown
 from passo.expand.expander import Options, expand_file, needs_expanding
 from passo.expand.place import ExpandError
+from passo.expand.tools import Tool
 from passo.gcode import Gcode, GcodeError, GcodeSettings, lines
 from passo.toolchain import paths
 
@@ -174,6 +176,19 @@ def test_known(tmp_path: Path) -> None:
     """From the line on that tells it."""
     text = "G20 G0 X1\nG91 X1\nG10 L2 P2 X25.4\nG90 Y#5420 Z#5241\nG92 X5\nY#<_x>\nG43.1 Z2\nZ#5403"
     assert expanded(tmp_path, text.replace("25.4", "1"), Options())[3::2] == ["G90 Y2 Z25.4", "Y5", "Z2"]
+
+
+def test_tool_lengths(tmp_path: Path) -> None:
+    """G43 and G43.2 become G43.1 if the length is known; a tool change in the line leaves them."""
+    known = Options(tools={2: Tool(2, 0, 25.4), 3: Tool(3, 0, -1.25)})
+    text = "G0 G43 H2 X20 (a)\nG43.2 H3\nG20 G43 H2 Z1\nG21 M6 T3\nG43\nG43 H4\nG43.2 H2\nT2 M6 G43\nZ#5403"
+    assert expanded(tmp_path, text, replace(known, at_zero=True)) == [
+        *("G43.1 Z25.4", "G0 X20 (a)", "G43.1 Z24.15", "G20 G43.1 Z1", "Z1"),
+        *("G21 M6 T3", "G43.1 Z-1.25", "G43 H4", "G43.2 H2", "T2 M6 G43", "Z25.4"),
+    ]
+    assert expanded(tmp_path, "G43.2 H2", known) == ["G43.2 H2"]
+    begun = "G0 X0 Y0\nG41.1 D1 G43 H2 G0 X9\nX20\nG40 X0"
+    assert expanded(tmp_path, begun, known)[1] == "G43.1 Z25.4"
 
 
 def test_needs_expanding() -> None:

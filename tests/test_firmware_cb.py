@@ -21,6 +21,8 @@ from passo_stm32.grbl_board import BOTH_IMAGE, GREETING, LARGE_IMAGE, SMALL_IMAG
 from passo_stm32.machine import Machine
 from passo_stm32.processor import FLASH
 
+from tests.helpers.grbl_outputs import check_outputs_at_rest
+
 HZ = 36_000_000  # of the core
 PARAMETERS = replace(parameters_for(4), clock_hz=HZ, inputs=1, outputs=1, encoders=1)
 CODE, SIZE, SETTINGS = 120 << 10, 128 << 10, 4 << 10
@@ -45,7 +47,8 @@ def image(request: pytest.FixtureRequest) -> tuple[str, ...]:
 @pytest.fixture(scope="module")
 def elf(image: tuple[str, ...]) -> Path:
     """The program."""
-    return grbl_elf(paths.build / "tests" / "_".join(("firmware", *image)), image=image)
+    folder = "_".join(("firmware", *image)).replace("=", "_")  # make takes a name with = for a variable
+    return grbl_elf(paths.build / "tests" / folder, image=image)
 
 
 @pytest.fixture
@@ -183,11 +186,16 @@ def test_grbl_has_jerk_and_more_axes(board: GrblBoard) -> None:
     assert "$803=20000.000" in board.line("$$").splitlines()
 
 
+def test_outputs_at_rest(board: GrblBoard) -> None:
+    """As in the image for the small chip."""
+    check_outputs_at_rest(board)
+
+
 def test_a_tool_change(image: tuple[str, ...], board: GrblBoard) -> None:
     """With a table that outlasts a reset; the image with the console refuses its words."""
     if image == BOTH_IMAGE:
-        words = "M6", "M61 Q1", "G43", "G43.2 H1", "H1", "G10 L1 P1 Z1", "$TPW", "$TLR", "$394=1"
-        assert [board.line(word) for word in words] == ["error:20"] * 6 + ["error:3"] * 3
+        words = "M6", "M61 Q1", "G43", "G43.2 H1", "H1", "G10 L1 P1 Z1", "M62 P0", "$TPW", "$TLR", "$394=1"
+        assert [board.line(word) for word in words] == ["error:20"] * 7 + ["error:3"] * 3
         return
     for line in ("G10 L1 P16 Z-2.5", "$394=0.3", "T16 M3"):
         assert board.line(line) == "ok"

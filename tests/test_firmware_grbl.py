@@ -27,6 +27,8 @@ from passo_stm32.flash import FIRST, PAGE
 from passo_stm32.grbl_board import GREETING, START, Answers, GrblBoard, grbl_elf
 from passo_stm32.machine import Machine
 
+from tests.helpers.grbl_outputs import check_outputs_at_rest
+
 HZ = 36_000_000  # of the core
 PARAMETERS = replace(parameters_for(3), clock_hz=HZ)
 REGISTER_MAP = r.VERSION_MAJOR_RESET, r.VERSION_MINOR_RESET, r.VERSION_PATCH_RESET
@@ -287,6 +289,12 @@ def test_reset_in_mid_path(board: GrblBoard) -> None:
     assert board.line("G0 X0") == "ok"
     board.rest(1.0)
     assert board.report()["MPos"] == "0.000,0.000,0.000"
+
+
+def test_outputs_at_rest(elf: Path) -> None:
+    """`M5` behind the last motion: off when it ends; `M3` at rest: on before a dwell."""
+    with model_engine(replace(PARAMETERS, outputs=1), HZ) as engine:
+        check_outputs_at_rest(GrblBoard(engine, elf))
 
 
 def test_reset_of_the_board_in_mid_path(board: GrblBoard) -> None:

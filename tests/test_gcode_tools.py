@@ -96,3 +96,23 @@ def test_errors_change_nothing(gcode: Gcode, line: str, number: int) -> None:
     before = list(gcode.c.offsets.tool_length)
     assert refused(gcode, line) == number
     assert list(gcode.c.offsets.tool_length) == before and gcode.c.tool_length == 0 and gcode.c.tool == 0
+
+
+def test_outputs_of_the_user(gcode: Gcode) -> None:
+    """M62 and M63 with the lines that follow, M64 and M65 at rest; a reset ends them, M2 and M6 do not."""
+    c = planner()
+
+    def acted(line: str) -> list[tuple[int, int, bool]]:
+        gcode.execute(line)
+        return [(action.kind, action.output >> 20, action.stops) for action in gcode.actions()]
+
+    assert acted("M62 P0 G0 X1") == [(c.PASSO_GCODE_OUTPUT, 1, False), (c.PASSO_GCODE_LINE, 1, False)]
+    assert acted("M64 P3") == [(c.PASSO_GCODE_OUTPUT, 9, True)]
+    assert acted("M64 P3 X2") == [(c.PASSO_GCODE_LINE, 9, False)]
+    assert acted("T5 M6 M62 P2") == [(c.PASSO_GCODE_CHANGE, 13, False), (c.PASSO_GCODE_OUTPUT, 13, False)]
+    assert acted("M63 P0") == [(c.PASSO_GCODE_OUTPUT, 12, False)]
+    assert acted("M65 P2 M2") == [(c.PASSO_GCODE_OUTPUT, 8, True), (c.PASSO_GCODE_END, 8, False)]
+    assert refused(gcode, "M62") == 28 and refused(gcode, "M62 P4") == 20 and refused(gcode, "M62 P-1") == 4
+    assert refused(gcode, "M62 P1 M63 P1") in (21, 25) and refused(gcode, "M62 M64 P1") == 21
+    planner().passo_gcode_reset(gcode.c)
+    assert gcode.c.digital == 0

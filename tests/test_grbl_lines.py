@@ -145,3 +145,23 @@ def test_drives_that_rest(session: GrblConsole) -> None:
     assert session.fields("MPos")[0] == -1
     session.run(0.1)
     assert not session.grbl.c.driven and session.line("$1=255") == "ok" and session.grbl.c.driven
+
+
+def test_messages(session: GrblConsole) -> None:
+    """`(MSG,...)`: when the motion before has ended, in order, before the answer of `M0`; 63 characters."""
+    session.send(
+        b"(MSG, first)\nG1 X-10 F6000\n(msg,between)\nX-20\nM0 (a) ( Msg, Turn it ) ; (MSG,no)\n", 0.05
+    )
+    assert session.log.count("[MSG:first]") == 1
+    while "[MSG:between]" not in session.log:
+        assert -session.fields("MPos")[0] < 10.5
+        session.run(0.005)
+    assert 9.9 < -session.fields("MPos")[0] < 11.1
+    session.run(0.5)
+    assert session.log.endswith("[MSG:Turn it ]\r\nok\r\n")
+    assert session.status()["state"] == "Hold:0" and session.fields("MPos")[0] == -20
+    session.send(b"~")
+    assert session.line(f"(MSG,{'x' * 100}) ( MSGX, a) (MS) (print,b)") == f"[MSG:{'x' * 63}]\nok"
+    assert session.line("G9 (MSG,no)") == "error:20"
+    session.send(b"G1 X-30 F600\n(MSG,dropped)\n", 0.05)
+    assert "dropped" not in session.send(b"\x18", 0.5)

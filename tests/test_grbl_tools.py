@@ -62,6 +62,27 @@ def test_outputs_at_rest(session: GrblConsole) -> None:
     assert levels(session) == 0
 
 
+def test_outputs_of_the_user(session: GrblConsole) -> None:
+    """M62 with the line after it, M64 when the motion before has ended; a tool change leaves them."""
+    p0, p1 = 16, 32
+    session.send(b"M3 S500\nG1 X-5 F6000\nM62 P0\nG1 X-10\nM63 P0\nG1 X-15\nM64 P1\nG1 X-20\n", 0.02)
+    seen = []
+    while session.status()["state"] == "Run":
+        now = round(-session.fields("MPos")[0], 2), levels(session) & ~SPINDLE
+        seen += [now] if not seen or seen[-1][1] != now[1] else []
+        session.run(0.001)
+    assert [level for _, level in seen] == [0, p0, 0, p1]
+    for (x, _), wanted in zip(seen[1:], (5, 10, 15), strict=True):
+        assert wanted <= x < wanted + 0.5
+    session.send(b"T5 M6\n", 0.1)
+    assert levels(session) == p1
+    session.send(b"~", 0.1)
+    assert levels(session) == SPINDLE | p1
+    assert session.line("M65 P1") == "ok"
+    session.run(0.01)
+    assert levels(session) == SPINDLE
+
+
 def test_a_dwell_has_the_spindle(session: GrblConsole) -> None:
     """`M3`, `G4`, a line: it turns before the dwell."""
     session.send(b"M3 S500\nG4 P0.5\nG1 X-5 F6000\n", 0.1)

@@ -4,8 +4,8 @@
 #     tools/setup.sh [SET...]
 # A SET is an optional set of Python packages in requirements-SET.txt (yosys, fpga, ...); or `firmware`:
 # Debian's compiler for the STM32; or `browser`: Debian's headless Chromium; or `vhdl`: Debian's GHDL; or `gcode`: rs274, the
-# interpreter of Debian's LinuxCNC; or `cncjs`: the controller of that sender, where npm is. Safe to run again at any
-# time: it installs only what is missing.
+# interpreter of Debian's LinuxCNC; or `fuzz`: Debian's clang with libFuzzer; or `cncjs`: the controller of that
+# sender, where npm is. Safe to run again at any time: it installs only what is missing.
 # PYTHON selects the interpreter for the environment (default: python3).
 
 set -euo pipefail
@@ -39,6 +39,7 @@ headers="lz4.h:liblz4-dev zlib.h:zlib1g-dev"
 python_sets=()
 rs274=""
 cncjs=""
+fuzz=""
 for name in "$@"; do
     if [ "$name" = firmware ]; then
         tools+=" arm-none-eabi-gcc:gcc-arm-none-eabi"
@@ -47,6 +48,8 @@ for name in "$@"; do
         tools+=" chromium-headless-shell:chromium-headless-shell"
     elif [ "$name" = vhdl ]; then
         tools+=" ghdl:ghdl"
+    elif [ "$name" = fuzz ]; then
+        fuzz=yes
     elif [ "$name" = gcode ]; then
         rs274=.venv/rs274
     elif [ "$name" = cncjs ]; then
@@ -64,6 +67,11 @@ missing_tools() {
     for tool in $tools; do
         command -v "${tool%%:*}" >/dev/null || echo "${tool##*:}"
     done
+    [ -z "$fuzz" ] || fuzzer_is_there || echo clang libclang-rt-dev
+}
+
+fuzzer_is_there() {
+    echo 'int LLVMFuzzerTestOneInput(void) { return 0; }' | clang -fsanitize=fuzzer -x c - -o /dev/null 2>/dev/null
 }
 
 # Packages missing for the interpreter: venv needs ensurepip; cffi needs the headers; cocotb loads Python into the

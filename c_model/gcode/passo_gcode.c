@@ -33,6 +33,9 @@ static void clear_job(struct passo_gcode *gcode)
 	job->change = job->output = job->dwell = job->offsets = job->via = job->motion = job->pause =
 	    job->end = false;
 	job->turns = job->drills = false;
+#ifndef PASSO_PLAIN_GCODE
+	job->settles = false;
+#endif
 	job->probe = PASSO_GCODE_NONE;
 }
 
@@ -62,6 +65,9 @@ void passo_gcode_reset(struct passo_gcode *gcode)
 	for (unsigned axis = 0; axis < PASSO_GCODE_AXES_MAX; axis++)
 		gcode->shift[axis] = 0;
 	gcode->flood = gcode->mist = false;
+#ifndef PASSO_PLAIN_GCODE
+	gcode->digital = 0;
+#endif
 	gcode->tool_length = gcode->feed = gcode->spindle = 0;
 	gcode->tolerance = 0;
 	gcode->line = 0;
@@ -90,6 +96,24 @@ static void accept_coolant(struct passo_gcode *gcode, passo_gcode_command comman
 {
 	gcode->mist = command == PASSO_GCODE_M(7) || (gcode->mist && command != PASSO_GCODE_M(9));
 	gcode->flood = command == PASSO_GCODE_M(8) || (gcode->flood && command != PASSO_GCODE_M(9));
+}
+
+/* M62 and M64: on. M64 and M65: not with the motion. */
+static void accept_digital(struct passo_gcode *gcode, const struct passo_gcode_check *check)
+{
+#ifdef PASSO_PLAIN_GCODE
+	(void)gcode, (void)check;
+#else
+	const passo_gcode_command command = check->block.command[PASSO_GCODE_DIGITAL];
+
+	if (command == PASSO_GCODE_NONE)
+		return;
+	if (command == PASSO_GCODE_M(62) || command == PASSO_GCODE_M(64))
+		gcode->digital |= check->digital;
+	else
+		gcode->digital &= (uint8_t)~check->digital;
+	gcode->job.settles = command >= PASSO_GCODE_M(64);
+#endif
 }
 
 static void accept_command(struct passo_gcode *gcode, const struct passo_gcode_check *check)
@@ -154,6 +178,7 @@ static void accept(struct passo_gcode *gcode, const struct passo_gcode_check *ch
 	for (unsigned group = 0; group < PASSO_GCODE_MODES; group++)
 		gcode->mode[group] = check->mode[group];
 	accept_coolant(gcode, block->command[PASSO_GCODE_COOLANT]);
+	accept_digital(gcode, check);
 	accept_command(gcode, check);
 	if (gcode->job.motion)
 		passo_gcode_copy(gcode, gcode->job.destination, gcode->position);

@@ -20,7 +20,7 @@
 
 #define PASSO_GCODE_SYSTEMS 6u /* G54 .. G59 */
 
-/* Whether there is a tool change; without it a player changes no outputs at rest either. */
+/* Whether there is a tool change. */
 #ifdef PASSO_PLAIN_GCODE
 #define PASSO_GCODE_HAS_TOOLS false
 #else
@@ -56,13 +56,17 @@ struct passo_gcode_offsets {
 #define PASSO_GCODE_OUTPUT_REVERSE (UINT32_C(1) << 17)
 #define PASSO_GCODE_OUTPUT_FLOOD (UINT32_C(1) << 18)
 #define PASSO_GCODE_OUTPUT_MIST (UINT32_C(1) << 19)
+#define PASSO_GCODE_OUTPUT_DIGITAL (UINT32_C(1) << 20) /* M62 to M65: P0, and the following ones */
+#define PASSO_GCODE_DIGITALS 4u
+#define PASSO_GCODE_OUTPUTS_DIGITAL                                                                          \
+	(PASSO_GCODE_OUTPUT_DIGITAL * ((UINT32_C(1) << PASSO_GCODE_DIGITALS) - 1u))
 #define PASSO_GCODE_OUTPUT_PROPORTIONAL (UINT32_C(1) << 24)
 
 enum passo_gcode_kind {
 	PASSO_GCODE_LINE,
 	PASSO_GCODE_PROBE, /* to the target, until the probe triggers; `probe` is 382 .. 385 */
 	PASSO_GCODE_DWELL,
-	PASSO_GCODE_OUTPUT,  /* spindle or coolant have changed */
+	PASSO_GCODE_OUTPUT,  /* levels have changed; `stops`: now, M64 and M65 */
 	PASSO_GCODE_PAUSE,   /* M0: wait for the operator after the preceding lines */
 	PASSO_GCODE_END,     /* M2, M30: of the program */
 	PASSO_GCODE_OFFSETS, /* struct passo_gcode_offsets has changed */
@@ -74,7 +78,7 @@ struct passo_gcode_action {
 	passo_gcode_position target; /* machine coordinates */
 	uint64_t feed;               /* UQ32.32 mm/s, or PASSO_PATH_RAPID */
 	uint64_t tolerance;          /* for passo_path_tolerance(), before the line is added */
-	bool stops;                  /* at the end of the line */
+	bool stops;                  /* at the end of the line, or of the one before */
 	uint64_t microseconds;       /* of a dwell */
 	uint32_t output;
 	uint32_t line; /* N; 0: none */
@@ -87,6 +91,9 @@ struct passo_gcode_job {
 	bool change, output, dwell, offsets, via, motion, pause, end; /* in this order */
 	bool turns;                                                   /* the motion is an arc */
 	bool drills;                                                  /* the motion is a cycle */
+#ifndef PASSO_PLAIN_GCODE
+	bool settles; /* the output changes at rest */
+#endif
 	passo_gcode_command probe; /* the motion is a probe; else PASSO_GCODE_NONE */
 	uint64_t microseconds;
 	uint64_t feed;                              /* UQ32.32 mm/s, or PASSO_PATH_RAPID */
@@ -103,6 +110,9 @@ struct passo_gcode {
 	struct passo_gcode_offsets offsets;
 	passo_gcode_command mode[PASSO_GCODE_MODES];
 	bool flood, mist;
+#ifndef PASSO_PLAIN_GCODE
+	uint8_t digital; /* of M62 to M65: P0 is bit 0 */
+#endif
 	passo_gcode_position position;  /* programmed end, machine coordinates */
 	passo_gcode_position shift;     /* G92 */
 	int64_t tool_length;            /* G43, G43.1, G43.2 */

@@ -25,6 +25,9 @@ uint32_t passo_gcode_output(const struct passo_gcode *gcode)
 		output |= full > 0 ? (uint32_t)passo_mul_div(speed, POWER_FULL, full) : 0u;
 		output |= gcode->mode[PASSO_GCODE_SPINDLE] == PASSO_GCODE_M(4) ? reverse : 0u;
 	}
+#ifndef PASSO_PLAIN_GCODE
+	output |= gcode->digital * PASSO_GCODE_OUTPUT_DIGITAL;
+#endif
 	output |= gcode->flood ? PASSO_GCODE_OUTPUT_FLOOD : 0u;
 	return output | (gcode->mist ? PASSO_GCODE_OUTPUT_MIST : 0u);
 }
@@ -72,7 +75,8 @@ static bool next_of_cycle(struct passo_gcode *gcode, struct passo_gcode_action *
 	} else if (stroke != PASSO_GCODE_STROKE_FEED) {
 		action->feed = PASSO_PATH_RAPID;
 		if (stroke == PASSO_GCODE_STROKE_RAPID_STOPPED)
-			action->output &= PASSO_GCODE_OUTPUT_FLOOD | PASSO_GCODE_OUTPUT_MIST;
+			action->output &=
+			    PASSO_GCODE_OUTPUT_FLOOD | PASSO_GCODE_OUTPUT_MIST | PASSO_GCODE_OUTPUTS_DIGITAL;
 	}
 	return job->motion;
 }
@@ -115,9 +119,12 @@ bool passo_gcode_next(struct passo_gcode *gcode, struct passo_gcode_action *acti
 	if (PASSO_GCODE_HAS_TOOLS && take(&job->change)) {
 		action->kind = PASSO_GCODE_CHANGE;
 		action->tool = gcode->tool;
-		action->output = 0;
+		action->output &= PASSO_GCODE_OUTPUTS_DIGITAL;
 	} else if (take(&job->output)) {
 		action->kind = PASSO_GCODE_OUTPUT;
+#ifndef PASSO_PLAIN_GCODE
+		action->stops = job->settles;
+#endif
 	} else if (take(&job->dwell)) {
 		action->kind = PASSO_GCODE_DWELL;
 		action->microseconds = job->microseconds;

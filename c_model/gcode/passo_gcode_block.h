@@ -3,8 +3,8 @@
  *
  * Numbers are exact in millionths: millimeters become nanometers, seconds microseconds.
  *
- * PASSO_PLAIN_GCODE, for the flash of a small controller: no tool change and no tool table; their words are
- * refused.
+ * PASSO_PLAIN_GCODE, for the flash of a small controller: no tool change, no tool table, no outputs of the
+ * user; their words are refused.
  */
 #ifndef PASSO_GCODE_BLOCK_H
 #define PASSO_GCODE_BLOCK_H
@@ -37,6 +37,9 @@ enum passo_gcode_group {
 	PASSO_GCODE_COOLANT,      /* M7 M8 M9 */
 	PASSO_GCODE_PROGRAM,      /* M0 M1 M2 M30 */
 	PASSO_GCODE_TOOL_CHANGE,  /* M6 M61 */
+#ifndef PASSO_PLAIN_GCODE
+	PASSO_GCODE_DIGITAL, /* M62-65 */
+#endif
 	PASSO_GCODE_GROUPS
 };
 #define PASSO_GCODE_MODES PASSO_GCODE_COMMAND

@@ -104,7 +104,25 @@ static enum passo_gcode_error check_table_length(struct passo_gcode_check *check
 	(void)check;
 	return PASSO_GCODE_OK;
 }
+
+static enum passo_gcode_error check_digital(struct passo_gcode_check *check)
+{
+	(void)check;
+	return PASSO_GCODE_OK;
+}
 #else
+static enum passo_gcode_error check_digital(struct passo_gcode_check *check)
+{
+	if (check->block.command[PASSO_GCODE_DIGITAL] == PASSO_GCODE_NONE)
+		return PASSO_GCODE_OK;
+	if (!passo_gcode_take(check, 'P'))
+		return PASSO_GCODE_NO_VALUE;
+	if (whole_of(check, 'P') >= PASSO_GCODE_DIGITALS)
+		return PASSO_GCODE_UNSUPPORTED;
+	check->digital = (uint8_t)(1u << whole_of(check, 'P'));
+	return PASSO_GCODE_OK;
+}
+
 /* M6 loads the tool of T; M61 says which one is loaded. */
 static enum passo_gcode_error check_change(struct passo_gcode_check *check)
 {
@@ -150,6 +168,8 @@ static enum passo_gcode_error check_tool(struct passo_gcode_check *check)
 	if (passo_gcode_take(check, 'T') && whole_of(check, 'T') > TOOL_MAX)
 		return PASSO_GCODE_TOOL;
 	enum passo_gcode_error error = check_change(check);
+	if (error == PASSO_GCODE_OK)
+		error = check_digital(check);
 	check->tool_length = length == PASSO_GCODE_G(49, 0) ? 0 : check->gcode->tool_length;
 	if (length == PASSO_GCODE_G(43, 1)) {
 		if (check->axis_words != PASSO_GCODE_WORD('Z'))

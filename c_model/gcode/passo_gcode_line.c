@@ -23,17 +23,64 @@ void passo_gcode_line_clear(struct passo_gcode_line *line)
 	line->length = 0;
 	line->comment = '\0';
 	line->overflow = false;
+#ifndef PASSO_PLAIN_GCODE
+	line->message[0] = '\0';
+	line->said = 0;
+#endif
 }
+
+static char upper(char byte)
+{
+	return byte >= 'a' && byte <= 'z' ? (char)(byte - 'a' + 'A') : byte;
+}
+
+#ifdef PASSO_PLAIN_GCODE
+static void begin_comment(struct passo_gcode_line *line)
+{
+	(void)line;
+}
+
+static void add_to_comment(struct passo_gcode_line *line, char byte)
+{
+	(void)line, (void)byte;
+}
+#else
+static const char MARK[] = "MSG,";
+#define MARKED (sizeof MARK - 1u)
+#define NO_MESSAGE UINT8_MAX
+
+static void begin_comment(struct passo_gcode_line *line)
+{
+	line->begun = line->comment == '(' ? 0 : NO_MESSAGE;
+}
+
+/* Spaces before the mark and before the text do not count. */
+static void add_to_comment(struct passo_gcode_line *line, char byte)
+{
+	if (line->begun < MARKED && byte != ' ') {
+		line->begun = upper(byte) == MARK[line->begun] ? (uint8_t)(line->begun + 1u) : NO_MESSAGE;
+		line->said = line->begun == MARKED ? 0 : line->said;
+		line->message[line->said] = '\0';
+	} else if (line->begun == MARKED && (unsigned char)byte >= ' ' && (line->said > 0 || byte != ' ')
+	           && line->said + 1u < PASSO_GCODE_MESSAGE_SIZE) {
+		line->message[line->said++] = byte;
+		line->message[line->said] = '\0';
+	}
+}
+#endif
 
 void passo_gcode_line_add(struct passo_gcode_line *line, char byte)
 {
 	if (line->comment != '\0') {
 		if (line->comment == '(' && byte == ')')
 			line->comment = '\0';
+		else
+			add_to_comment(line, byte);
 		return;
 	}
 	if (byte == '(' || byte == ';') {
 		line->comment = byte;
+		begin_comment(line);
 		return;
 	}
 	if ((unsigned char)byte <= ' ')
@@ -42,9 +89,7 @@ void passo_gcode_line_add(struct passo_gcode_line *line, char byte)
 		line->overflow = true;
 		return;
 	}
-	if (byte >= 'a' && byte <= 'z')
-		byte = (char)(byte - 'a' + 'A');
-	line->text[line->length++] = byte;
+	line->text[line->length++] = upper(byte);
 	line->text[line->length] = '\0';
 }
 

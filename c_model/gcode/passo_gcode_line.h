@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Assembles a line byte by byte: drops spaces and comments, converts to upper case.
+ * Assembles a line byte by byte: drops spaces and comments but for a message, converts to upper case.
  */
 #ifndef PASSO_GCODE_LINE_H
 #define PASSO_GCODE_LINE_H
@@ -11,8 +11,16 @@
 /* Longest line, without spaces and comments, plus its terminator. */
 #define PASSO_GCODE_LINE_SIZE 128u
 
+/* Longest text of a message, plus its terminator; the rest is dropped. */
+#define PASSO_GCODE_MESSAGE_SIZE 64u
+
 struct passo_gcode_line {
 	char text[PASSO_GCODE_LINE_SIZE];
+#ifndef PASSO_PLAIN_GCODE
+	char message[PASSO_GCODE_MESSAGE_SIZE]; /* of the last comment (MSG,...); empty: none */
+	uint8_t said;                           /* its length */
+	uint8_t begun;                          /* characters of `MSG,` at the beginning of the comment */
+#endif
 	uint8_t length;
 	char comment; /* its first character; 0: outside */
 	bool overflow;

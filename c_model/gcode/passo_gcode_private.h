@@ -20,6 +20,9 @@ struct passo_gcode_check {
 	uint64_t tolerance;  /* UQ32.32 mm, of G61 and G64 */
 	int64_t tool_length; /* nm */
 	uint8_t loaded;      /* the tool in the spindle */
+#ifndef PASSO_PLAIN_GCODE
+	uint8_t digital; /* the output of M62 to M65, as a bit */
+#endif
 	struct passo_gcode_drill drill;
 	unsigned system;          /* that is set by G10 L2, L20 */
 	unsigned entry;           /* of the tool table, that is set by G10 L1; 0: none */

@@ -85,8 +85,10 @@ static enum passo_gcode_error execute(struct passo_grbl *grbl)
 
 	if (grbl->line.overflow)
 		return PASSO_GCODE_LINE_OVERFLOW;
-	if (text[0] == '\0')
+	if (text[0] == '\0') {
+		passo_grbl_take_message(grbl);
 		return PASSO_GCODE_OK;
+	}
 	if (rule != PASSO_GRBL_TAKEN)
 		return (enum passo_gcode_error)rule;
 	if (kind == PASSO_GRBL_KIND_JOG && grbl->dropped)
@@ -95,6 +97,8 @@ static enum passo_gcode_error execute(struct passo_grbl *grbl)
 		return passo_grbl_system(grbl, text);
 	const enum passo_gcode_error error = passo_gcode_execute(grbl->player->gcode, text);
 
+	if (error == PASSO_GCODE_OK)
+		passo_grbl_take_message(grbl);
 	grbl->reports = error == PASSO_GCODE_OK ? 0 : grbl->reports;
 	return error;
 }
@@ -215,6 +219,7 @@ void passo_grbl_poll(struct passo_grbl *grbl)
 	grbl->player->held = grbl->held;
 	const enum passo_error error = passo_player_poll(grbl->player, &event);
 
+	passo_grbl_poll_message(grbl);
 	heed(grbl, event, error);
 	passo_grbl_poll_touch(grbl);
 	if (grbl->owes && !is_busy(grbl)) {

@@ -59,6 +59,9 @@ struct passo_grbl_setup {
 	bool (*take_line)(const char *text);
 };
 
+/* Messages of the program that wait for the motion before them. */
+#define PASSO_GRBL_MESSAGES 2u
+
 /* All members are private. */
 struct passo_grbl {
 	struct passo_player *player;
@@ -106,6 +109,11 @@ struct passo_grbl {
 	volatile bool rejoins;           /* those are over: the next byte follows the program's */
 	volatile uint8_t program, typed; /* of the ring: lines of the program, and behind them those others */
 	int64_t reference;               /* nm */
+	struct {
+		char text[PASSO_GCODE_MESSAGE_SIZE];
+		uint32_t before; /* this line of the path */
+	} message[PASSO_GRBL_MESSAGES];
+	uint8_t messages; /* that are to be said */
 #endif
 };
 

@@ -26,9 +26,7 @@ void passo_grbl_report_modes(struct passo_grbl *grbl)
 		say_command(grbl, i > 0 ? " G" : "G", gcode->mode[SHOWN[i]]);
 	say_command(grbl, " M", gcode->mode[PASSO_GCODE_SPINDLE]);
 	passo_grbl_say(grbl, gcode->mist ? " M7" : "");
-	passo_grbl_say(grbl, gcode->flood ? " M8" : "");
-	passo_grbl_say(grbl, gcode->mist || gcode->flood ? "" : " M9");
-	passo_grbl_say(grbl, " T");
+	passo_grbl_say(grbl, gcode->flood ? " M8 T" : gcode->mist ? " T" : " M9 T");
 	passo_grbl_say_number(grbl, gcode->tool);
 	passo_grbl_say(grbl, " F");
 	passo_grbl_say_rate(grbl, passo_mul_div((uint64_t)gcode->feed, 1u << 16, PASSO_GCODE_MILLION));
@@ -60,11 +58,11 @@ static void report_motors(struct passo_grbl *grbl)
 
 void passo_grbl_report_offsets(struct passo_grbl *grbl)
 {
-	static const char *const SYSTEMS[] = {"[G54", "[G55", "[G56", "[G57", "[G58", "[G59"};
 	const struct passo_gcode *gcode = grbl->player->gcode;
+	char name[] = "[G54";
 
-	for (unsigned system = 0; system < PASSO_GCODE_SYSTEMS; system++) {
-		passo_grbl_say_position(grbl, SYSTEMS[system], gcode->offsets.system[system]);
+	for (unsigned system = 0; system < PASSO_GCODE_SYSTEMS; system++, name[3]++) {
+		passo_grbl_say_position(grbl, name, gcode->offsets.system[system]);
 		passo_grbl_say(grbl, "]\r\n");
 	}
 	passo_grbl_say_position(grbl, "[G28", gcode->offsets.home[0]);

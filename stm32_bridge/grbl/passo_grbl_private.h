@@ -116,6 +116,10 @@ enum passo_gcode_error passo_grbl_home(struct passo_grbl *grbl);
 void passo_grbl_poll_home(struct passo_grbl *grbl);
 
 #ifndef PASSO_PLAIN_GCODE
+/* Keeps the message of the line, until the motion before it has ended. */
+void passo_grbl_take_message(struct passo_grbl *grbl);
+/* Says them then. */
+void passo_grbl_poll_message(struct passo_grbl *grbl);
 /* M6, at rest. */
 void passo_grbl_begin_change(struct passo_grbl *grbl);
 /* Lines that are received from now on are taken before those of the program. */
@@ -128,6 +132,16 @@ enum passo_gcode_error passo_grbl_set_reference(struct passo_grbl *grbl);
 enum passo_gcode_error passo_grbl_touch(struct passo_grbl *grbl);
 void passo_grbl_poll_touch(struct passo_grbl *grbl);
 #else
+static inline void passo_grbl_take_message(struct passo_grbl *grbl)
+{
+	(void)grbl;
+}
+
+static inline void passo_grbl_poll_message(struct passo_grbl *grbl)
+{
+	(void)grbl;
+}
+
 static inline void passo_grbl_poll_touch(struct passo_grbl *grbl)
 {
 	(void)grbl;

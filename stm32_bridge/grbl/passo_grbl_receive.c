@@ -188,6 +188,7 @@ void passo_grbl_drop_input(struct passo_grbl *grbl)
 {
 #ifndef PASSO_PLAIN_GCODE
 	grbl->admits = false;
+	grbl->messages = 0;
 #endif
 	grbl->tail = end_of(grbl);
 	passo_grbl_lost(grbl);

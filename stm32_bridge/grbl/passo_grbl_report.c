@@ -97,10 +97,10 @@ static void report_state(struct passo_grbl *grbl)
 	const enum passo_grbl_state state = passo_grbl_state(grbl);
 
 	passo_grbl_say(grbl, passo_grbl_state_name(state));
-	if (state == PASSO_GRBL_STATE_DOOR)
-		passo_grbl_say(grbl, passo_grbl_slows(grbl) ? ":2" : ":0");
-	else if (state == PASSO_GRBL_STATE_HOLD)
-		passo_grbl_say(grbl, passo_grbl_slows(grbl) ? ":1" : ":0");
+	if (state == PASSO_GRBL_STATE_DOOR || state == PASSO_GRBL_STATE_HOLD)
+		passo_grbl_say(grbl, !passo_grbl_slows(grbl)          ? ":0"
+		                     : state == PASSO_GRBL_STATE_DOOR ? ":2"
+		                                                      : ":1");
 }
 
 /* That of what moves; at rest, the one commanded. */
@@ -166,12 +166,12 @@ static void report_accessories(struct passo_grbl *grbl, uint32_t output)
 
 static void report_overrides(struct passo_grbl *grbl, uint32_t output)
 {
-	passo_grbl_say(grbl, "|Ov:");
-	passo_grbl_say_number(grbl, grbl->feed_now);
-	passo_grbl_say(grbl, ",");
-	passo_grbl_say_number(grbl, grbl->rapid_now);
-	passo_grbl_say(grbl, ",");
-	passo_grbl_say_number(grbl, grbl->spindle_now);
+	const uint8_t percent[] = {grbl->feed_now, grbl->rapid_now, grbl->spindle_now};
+
+	for (unsigned i = 0; i < sizeof percent; i++) {
+		passo_grbl_say(grbl, i > 0 ? "," : "|Ov:");
+		passo_grbl_say_number(grbl, percent[i]);
+	}
 	report_accessories(grbl, output);
 }
 

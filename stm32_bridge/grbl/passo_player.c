@@ -16,9 +16,8 @@
 void passo_player_open(struct passo_player *player, struct passo_gcode *gcode, struct passo_path_feed *feed,
     const struct passo_player_machine *machine)
 {
-	*player = (struct passo_player){.gcode = gcode, .feed = feed, .machine = machine};
-	if (PASSO_GCODE_HAS_TOOLS)
-		player->levels = feed->passo->output.levels;
+	*player = (struct passo_player){
+	    .gcode = gcode, .feed = feed, .machine = machine, .levels = PASSO_PLAYER_UNSURE};
 }
 
 bool passo_player_has_taken(const struct passo_player *player)
@@ -75,30 +74,36 @@ static bool spins_up(const struct passo_player *player, uint8_t levels)
 	    && ((levels ^ player->levels) & (on | reverse));
 }
 
-/* What the program has on; while a tool is changed, nothing. */
+/* What the program has on; while a tool is changed, neither spindle nor coolant. */
 static uint32_t output_of(const struct passo_player *player, uint32_t output)
 {
-	return (PASSO_GCODE_HAS_TOOLS && player->changes) || !player->feed->passo->has_outputs ? 0u : output;
+	if (PASSO_GCODE_HAS_TOOLS && player->changes)
+		output &= PASSO_GCODE_OUTPUTS_DIGITAL;
+	return player->feed->passo->has_outputs ? output : 0u;
 }
 
-/* At rest. Not `done`: some pins still wait for their times. */
-static enum passo_error set_output(struct passo_player *player, uint32_t output, bool *done)
+/* At rest. Error: MOVING, some pins still wait for their times. */
+static enum passo_error set_output(struct passo_player *player, uint32_t output)
 {
 	struct passo *passo = player->feed->passo;
 	const uint8_t levels = (uint8_t)(output_of(player, output) >> LEVELS_AT);
 
-	*done =
-	    !PASSO_GCODE_HAS_TOOLS || !passo->has_outputs || (levels == player->levels && !player->unsure);
-	if (*done)
+	if (!passo->has_outputs || levels == player->levels)
 		return PASSO_OK;
 	const enum passo_error error = passo_set_levels(passo, levels);
-	*done = error == PASSO_OK;
-	if (*done) {
+	if (error != PASSO_OK)
+		return error;
+	if (PASSO_GCODE_HAS_TOOLS) {
 		player->spins = spins_up(player, levels);
 		player->spins_at = passo_driver_now(passo);
-		player->levels = levels;
-		player->unsure = false;
 	}
+	player->levels = levels;
+	return PASSO_OK;
+}
+
+/* Of set_output(), which is called again. */
+static enum passo_error try_again(enum passo_error error)
+{
 	return error == PASSO_ERROR_MOVING ? PASSO_OK : error;
 }
 
@@ -180,8 +185,7 @@ static enum passo_error take_line(struct passo_player *player, enum passo_player
 	player->waits = error == PASSO_PLAN_PATH_FULL;
 	if (error == PASSO_PLAN_OK) {
 		player->chords++;
-		if (PASSO_GCODE_HAS_TOOLS)
-			player->levels = (uint8_t)(output >> LEVELS_AT);
+		player->levels = (uint8_t)(output >> LEVELS_AT);
 		if (action->stops)
 			passo_path_dwell(player->feed->path, 0);
 	}
@@ -206,10 +210,9 @@ enum passo_error passo_player_restart(struct passo_player *player)
 	passo_path_feed_open(player->feed, player->feed->passo, player->feed->path);
 	passo_gcode_set_position(player->gcode, position);
 	player->waits = player->probes = player->paused = player->dwells = false;
-	if (PASSO_GCODE_HAS_TOOLS) {
+	player->levels |= PASSO_PLAYER_UNSURE;
+	if (PASSO_GCODE_HAS_TOOLS)
 		player->restores = player->spins = false;
-		player->unsure = true;
-	}
 	return PASSO_OK;
 }
 
@@ -233,11 +236,10 @@ static enum passo_error take_at_rest(struct passo_player *player, enum passo_pla
 	player->waits = passo_path_feed_is_moving(player->feed);
 	if (player->waits)
 		return PASSO_OK;
-	bool done = false;
-	const enum passo_error error = set_output(player, player->action.output, &done);
-	player->waits = !done;
-	if (!done)
-		return error;
+	const enum passo_error error = set_output(player, player->action.output);
+	player->waits = error != PASSO_OK;
+	if (player->waits)
+		return try_again(error);
 	switch (player->action.kind) {
 	case PASSO_GCODE_PROBE:
 		return passo_player_begin_probe(player, event);
@@ -307,7 +309,8 @@ static enum passo_error take_action(struct passo_player *player, enum passo_play
 		*event = PASSO_PLAYER_OFFSETS;
 		break;
 	case PASSO_GCODE_OUTPUT: /* goes with the lines that follow */
-		if (spins_up(player, (uint8_t)(output_of(player, player->action.output) >> LEVELS_AT)))
+		if ((PASSO_GCODE_HAS_TOOLS && player->action.stops)
+		    || spins_up(player, (uint8_t)(output_of(player, player->action.output) >> LEVELS_AT)))
 			return take_at_rest(player, event);
 		break;
 	}
@@ -323,10 +326,9 @@ static enum passo_error take_actions(struct passo_player *player, enum passo_pla
 
 	*event = PASSO_PLAYER_NOTHING;
 	if (PASSO_GCODE_HAS_TOOLS && player->restores) {
-		bool done = false;
-
-		error = set_output(player, passo_gcode_output(player->gcode), &done);
-		player->restores = !done;
+		error = set_output(player, passo_gcode_output(player->gcode));
+		player->restores = error != PASSO_OK;
+		error = try_again(error);
 	}
 	if (PASSO_GCODE_HAS_TOOLS && (player->restores || still_spins(player)))
 		return error;
@@ -345,12 +347,9 @@ static enum passo_error take_actions(struct passo_player *player, enum passo_pla
 /* The path has ended, and nothing else is under way. */
 static enum passo_error mind_output(struct passo_player *player)
 {
-	bool done = false;
-
-	if (!PASSO_GCODE_HAS_TOOLS || player->checks || !passo_player_has_taken(player)
-	    || passo_path_feed_is_moving(player->feed) || passo_is_moving(player->feed->passo))
+	if (player->checks || !passo_player_is_idle(player))
 		return PASSO_OK;
-	return set_output(player, passo_gcode_output(player->gcode), &done);
+	return try_again(set_output(player, passo_gcode_output(player->gcode)));
 }
 
 enum passo_error passo_player_poll(struct passo_player *player, enum passo_player_event *event)

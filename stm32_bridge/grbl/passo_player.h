@@ -49,6 +49,8 @@ struct passo_player_machine {
 /* The same for rapids: more than core and look-ahead can hold. */
 #define PASSO_PLAYER_WINDOW 512u
 
+#define PASSO_PLAYER_UNSURE 0x100u
+
 /* The line that is moving, or will move when the look-ahead starts. */
 enum passo_player_motion { PASSO_PLAYER_AT_REST, PASSO_PLAYER_FEED, PASSO_PLAYER_RAPID, PASSO_PLAYER_SEEK };
 
@@ -71,12 +73,11 @@ struct passo_player {
 	bool waits;  /* the action has not been accepted yet */
 	bool probes; /* probing in progress */
 	bool paused;
-	bool changes;   /* a tool is being changed: spindle and coolant are off */
-	uint8_t loads;  /* that tool */
-	uint8_t levels; /* of the core after the lines of the path */
-	bool unsure;    /* they may be others */
-	bool restores;  /* they are to be those of the program again */
-	bool spins;     /* the spindle comes up to speed */
+	bool changes;    /* a tool is being changed: spindle and coolant are off */
+	uint8_t loads;   /* that tool */
+	uint16_t levels; /* of the core after the lines of the path; PASSO_PLAYER_UNSURE: or others */
+	bool restores;   /* they are to be those of the program again */
+	bool spins;      /* the spindle comes up to speed */
 	uint32_t spins_at;
 	bool dwells;
 	uint64_t dwell;     /* remaining microseconds */

@@ -109,6 +109,16 @@ class Machine:
         """The command of a modal group in force, in tenths."""
         return int(self.gcode.c.mode[_group(group)])
 
+    @property
+    def knows_length(self) -> bool:
+        """Whether the tool length in force is known."""
+        return self._length
+
+    @property
+    def tool_length(self) -> float:
+        """In the units in force."""
+        return float(self.gcode.c.tool_length / NANOMETERS) / self.scale
+
     def knows(self, axis: int) -> bool:
         """Whether the work coordinate of an axis is known."""
         return self._position[axis]
@@ -221,7 +231,7 @@ class Machine:
     def _of_tool(self, index: int, name: str = "") -> float:
         name = name or f"#{index}"
         if index == 5403 and self._length:
-            return float(self.gcode.c.tool_length / NANOMETERS) / self.scale
+            return self.tool_length
         if 5401 <= index <= 5409 and index != 5403:
             return 0.0
         if self.tool is None or index == 5403:
@@ -243,8 +253,14 @@ class Machine:
         given = [axis for axis in range(self.axes) if AXIS_LETTERS[axis] in values]
         if 6 in commands or 61 in commands:
             self.tool = round(values["Q"]) if 61 in commands and "Q" in values else int(self.gcode.c.tool)
+            planner().passo_gcode_load(self.gcode.c, self.tool)
         if any(380 <= code < 390 for code in codes) or (380 <= self.mode(MOTION) < 390 and given):
             self._set(self._position, given, False)
+        knew_length = self._length
+        if codes & {431, 430, 432, 490}:
+            tool = round(values["H"]) if "H" in values else self.tool
+            known = not codes & {430, 432} or tool in self.tools or tool == 0
+            self._length = known and (self._length or 432 not in codes)
         if self.at_zero:
             self._shifted = self._shifted or 920 in codes
             return
@@ -253,12 +269,8 @@ class Machine:
             old = self._systems[SYSTEMS[old_system]]
             for axis in range(self.axes):
                 self._position[axis] &= old[axis] and self._systems[system][axis]
-        if codes & {431, 430, 432, 490}:
-            if self.axes > 2:
-                self._position[2] &= self._length
-            tool = round(values["H"]) if "H" in values else self.tool
-            known = not codes & {430, 432} or tool in self.tools or tool == 0
-            self._length = known and (self._length or 432 not in codes)
+        if codes & {431, 430, 432, 490} and self.axes > 2:
+            self._position[2] &= knew_length
         if 100 in codes:
             self._learn_offsets(values, given, system)
         elif 920 in codes:

@@ -15,6 +15,7 @@ from passo.gcode import AXIS_LETTERS, Gcode, GcodeError
 OFF, ON = 400, {410: 1, 411: 1, 420: -1, 421: -1}
 # Commands that may be used while compensation is on, besides those that change nothing.
 ALLOWED = {*LINES_AND_ARCS, 40, 610, 611, 640, 800, 200, 210, 900, 910, 911, 930, 940, OFF}
+FROM_TABLE, UNITS = {430, 432}, (200, 210)  # G43 and G43.2; G20 and G21
 TOOL_CHANGES, PAUSES, ENDS = (6, 61), (0, 1, 60), (2, 30)
 # Commands that use the position, which is not that of the contour before the first motion after G40.
 USES_POSITION = {100, 281, 301, 920, *range(382, 386)}
@@ -44,16 +45,36 @@ class Output:
     def take(self, text: str, words: Sequence[Word], comments: Sequence[str], place: Place) -> None:
         """A line as text, and its words; raises ExpandError."""
         codes = {word.code for word in words if word.letter == "G"}
+        if codes & FROM_TABLE and self._knows_length(codes, words):
+            units = [word for word in words if word.letter == "G" and word.code in UNITS]
+            table = [word for word in words if _is_of_table(word)]
+            self._advance(" ".join(map(str, [*units, *table])), table, place)
+            made = [*units, Word("G", 43.1), Word("Z", self.machine.tool_length)]
+            self.lines.append(PlainLine(" ".join(map(str, made)), place))
+            words = [word for word in words if word not in [*units, *table]]
+            text, codes = " ".join([*map(str, words), *comments]), codes - FROM_TABLE
+            if not text:
+                return
         if self._compensation or self._leaving or codes & ON.keys():
             self._take_compensated(text, words, comments, place, codes)
         else:
             if OFF in codes:
                 self.machine.compensation = OFF
-            try:
-                self.machine.advance(text, words)
-            except GcodeError as error:
-                raise ExpandError(place, explain(error, words, self.machine.axes)) from None
+            self._advance(text, words, place)
             self.lines.append(PlainLine(text, place))
+
+    def _knows_length(self, codes: set[int], words: Sequence[Word]) -> bool:
+        """Whether that of G43 or G43.2 is in the table of tools, and its line changes no tool."""
+        changes = any(word.letter == "M" and word.code // 10 in TOOL_CHANGES for word in words)
+        tool = next((round(word.value) for word in words if word.letter == "H"), self.machine.tool)
+        sure = 432 not in codes or self.machine.knows_length
+        return sure and not changes and tool in self.machine.tools
+
+    def _advance(self, text: str, words: Sequence[Word], place: Place) -> None:
+        try:
+            self.machine.advance(text, words)
+        except GcodeError as error:
+            raise ExpandError(place, explain(error, words, self.machine.axes)) from None
 
     def finish(self) -> None:
         """The program has ended; raises ExpandError."""
@@ -237,6 +258,10 @@ class Output:
             self.lines.append(PlainLine(item, place))
             return
         self.lines.append(PlainLine(self._writer.write(item), place))
+
+
+def _is_of_table(word: Word) -> bool:
+    return word.letter == "H" or (word.letter == "G" and word.code in FROM_TABLE)
 
 
 def _of_compensation(word: Word, turned_on: bool) -> bool:

@@ -25,7 +25,8 @@ ADVICE: tuple[tuple[str, range, str, str], ...] = (
     ("M", range(190, 200), "LinuxCNC", "the spindle cannot be oriented"),
     ("M", range(480, 540), "NIST, LinuxCNC", "overrides are the sender's: leave it out"),
     ("M", range(600, 610), "NIST", "pause with M0"),
-    ("M", range(610, 690), "LinuxCNC", "the machine has no such outputs and inputs"),
+    ("M", range(620, 660), "LinuxCNC", "the machine has the outputs P0 to P3"),
+    ("M", range(660, 690), "LinuxCNC", "the machine has no such outputs and inputs"),
     ("M", range(700, 740), "LinuxCNC", "write the modes that are to be restored"),
     ("M", range(820, 1100), "RepRap", "this is for 3D printers: leave it out"),
     (
