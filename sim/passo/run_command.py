@@ -6,7 +6,7 @@ from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 
-from passo.console import progress
+from passo.console import passing, progress
 from passo.engine import DifferenceError
 from passo.failure import BadInputError
 from passo.move_file import read_channels
@@ -35,7 +35,10 @@ class Wanted:
 
 
 def run_file(moves: Path, engine: str, out: Path | None, wanted: Wanted) -> bool:
-    """Run the moves, write the results and say where they are; return whether the motion was exact."""
+    """Run the moves, write the results and say where they are; return whether the motion was exact.
+
+    Ctrl-C ends it: KeyboardInterrupt, once the results up to then are written.
+    """
     window = wanted_window(wanted.waves, engine)
     file = read_channels(moves)
     if file.setup:
@@ -69,7 +72,10 @@ def run_file(moves: Path, engine: str, out: Path | None, wanted: Wanted) -> bool
         from passo.report_page import write_page
 
         write_page(file, runs, engine, out / PAGE)
-    return _conclude(file, runs, out, window, wanted)
+    exact = _conclude(file, runs, out, window, wanted)
+    if runs[0].canceled:
+        raise KeyboardInterrupt
+    return exact
 
 
 def _run_scene(file: Channels, engine: str, out: Path, wanted: Wanted) -> bool:
@@ -79,7 +85,8 @@ def _run_scene(file: Channels, engine: str, out: Path, wanted: Wanted) -> bool:
     with open_engine(engine, parameters, file.clock_hz) as core:
         _clear(out)
         try:
-            run = Scene(file, core).run()
+            with passing(file.name) as report:
+                run = Scene(file, core, lambda clock: report(clock / file.clock_hz)).run()
         except DifferenceError as error:
             write_json({"name": file.name, "ok": False, "difference": vars(error)}, out / SUMMARY)
             raise
