@@ -2,6 +2,7 @@
 """The command `passo`. Subcommands import lazily, so that `passo --help` is fast."""
 
 import argparse
+import io
 import sys
 from collections.abc import Sequence
 from itertools import pairwise
@@ -20,6 +21,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     0 success, 1 mismatch or fault, 2 invalid input, 130 interrupted, 141 nobody reads its output any more.
     """
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # not if the shell has closed it
+            stream.reconfigure(errors="replace")  # of a terminal that lacks a letter
     try:
         try:
             return _command(arguments)
