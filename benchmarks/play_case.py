@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from passo import part_command
+from passo import cli, part_command
 from passo.driver import DriverError
 from passo.path import PathAxis, PathSettings
 
@@ -57,7 +57,8 @@ def run(text: str, machine: Path, folder: Path) -> Sequence[Any]:
     part_command.play_part = kept
     program = folder / "program.nc"
     program.write_text(text)
-    assert part_command.run_part(program, machine, None, "model", folder / "results", False)
+    words = ["run", program, "--machine", machine, "--out", folder / "results"]
+    assert cli.main([str(word) for word in words]) == 0  # as of any commit
     return [*played[0].clocks, *played[0].positions, played[0].motions]
 
 

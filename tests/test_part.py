@@ -3,9 +3,11 @@
 
 import json
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +15,7 @@ from passo import cli, part_command
 from passo.driver import Driver, DriverError
 from passo.failure import BadInputError
 from passo.gcode import NANOMETERS, GcodeSettings
+from passo.host_loop import HostLoop
 from passo.machine_file import MachineFile, read_machine
 from passo.moves import PinTiming, q32
 from passo.native import planner
@@ -304,10 +307,65 @@ def test_a_program_in_c_is_refused_as_well() -> None:
 
 def test_what_does_not_fit_together_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["run", str(PART)]) == 2
-    assert cli.main(["run", str(PART), "--machine", str(MACHINE), "--waves"]) == 2
-    assert cli.main(["run", str(paths.examples / "turn.toml"), "--machine", str(MACHINE)]) == 2
+    assert cli.main(["run", str(PART), "--machine", str(MACHINE), "--waves", "--engine", "model"]) == 2
+    for option in (["--machine", str(MACHINE)], ["--from", "2"], ["--look-ahead", "9"]):
+        assert cli.main(["run", str(paths.examples / "turn.toml"), *option]) == 2
+    assert cli.main(["run", *2 * [str(paths.examples / "turn.toml")]]) == 2
     assert cli.main(["run", "missing.nc", "--machine", str(MACHINE)]) == 2
-    assert capsys.readouterr().err.count("\n") == 4
+    assert capsys.readouterr().err.count("\n") == 7
+
+
+def test_all_that_a_move_file_gets(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Pulses, waves, report, figures of the cut; of a part of a program."""
+    path, out = tmp_path / "part.tap", tmp_path / "out"
+    path.write_text("G0 X1\nG1 X2 Y1 F6000\nX3\nG0 X0\nM2\n")
+    words = ["run", path, "--machine", MACHINE, "--out", out, "--from", 2, "--to", 3, "--look-ahead", 8]
+    assert cli.main([*map(str, words), "--report", "--waves", "1ms..2ms"]) == 0
+    assert "waves, " in capsys.readouterr().out
+    rows = np.loadtxt(out / "pulses.csv", int, delimiter=",", skiprows=1)
+    assert (out / "pulses.csv").read_text().startswith("clock,axis,direction\n")
+    assert [int(rows[rows[:, 1] == axis, 2].sum()) for axis in range(3)] == [160, 80, 0]
+    assert (np.diff(rows[:, 0]) >= 0).all()
+    summary = json.loads((out / "summary.json").read_text())
+    assert summary["ok"] and summary["matched_edges"] > 400
+    assert summary["tools"][0]["feed_mm"] == pytest.approx(1 + math.sqrt(2), rel=1e-3)
+    assert summary["levels"][0]["feed_seconds"] == pytest.approx(summary["path_seconds"])
+    assert 20 < summary["highest"]["X"]["speed"] <= 100 and summary["highest"]["Z"]["speed"] == 0
+    assert 500 < summary["highest"]["X"]["acceleration"] < 1050
+    facts = (out / "report.html").read_text()
+    assert '"start":80' in facts and '"edges":[160,160,' in facts
+    assert (out / "waves.fst").stat().st_size > 1000
+    assert cli.main([*map(str, words), "--waves", "900ms..901ms"]) == 2
+    assert "the motion takes only 0." in capsys.readouterr().err
+
+
+def test_a_run_that_is_canceled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The results up to then are written."""
+    path, out = tmp_path / "part.nc", tmp_path / "out"
+    path.write_text("G1 F6000\n" + "".join(f"X{k % 9} Y{k}\n" for k in range(200)))
+    turn = HostLoop.turn
+
+    def cancel(loop: HostLoop, *arguments: Callable[[], Any]) -> None:
+        turn(loop, *arguments)
+        if loop.engine.clock > 64_000_000:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(HostLoop, "turn", cancel)
+    assert cli.main(["run", str(path), "--machine", str(MACHINE), "--out", str(out), "--plot"]) == 130
+    summary = json.loads((out / "summary.json").read_text())
+    (problem,) = summary["problems"]
+    assert problem.startswith(f"canceled at {path}:") and not summary["ok"]
+    assert 1000 < sum(summary["pulses"]) < 20_000 and (out / "path.png").exists()
+    assert len((out / "pulses.csv").read_text().splitlines()) == sum(summary["pulses"]) + 1
+
+
+def test_a_line_that_only_the_planner_refuses_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text("G0 X1\nX99999999\n")
+    assert cli.main(["run", str(path), "--machine", str(MACHINE), "--out", str(tmp_path)]) == 2
+    assert f"{path}:2: " in capsys.readouterr().err
 
 
 def test_a_machine_file(tmp_path: Path) -> None:

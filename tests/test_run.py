@@ -4,6 +4,7 @@
 import csv
 import dataclasses
 import json
+import os
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -329,3 +330,12 @@ def test_a_refusal_has_a_name() -> None:
             link.read(0x0FF, 1)
         with pytest.raises(RefusedError, match="BAD_VALUE"):
             link.push(r.ADDRESS_CHANNEL_BASE + r.CHANNEL_LINE, [1, 0, 0, 0, 0, 0])
+
+
+def test_a_terminal_that_lacks_letters(tmp_path: Path) -> None:
+    """A name that it cannot show is shown otherwise."""
+    path = write(tmp_path, TWO_MOVES, "\N{MICRO SIGN}.toml")
+    command = [sys.executable, "-m", "passo.cli", "run", path, "--engine", "model", "--out", tmp_path / "out"]
+    environment = {**os.environ, "PYTHONIOENCODING": "ascii:strict", "COLUMNS": "80"}
+    done = subprocess.run(command, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0 and done.stdout.startswith("?: ")

@@ -64,9 +64,10 @@ def rtl_sources(folder: Path = paths.rtl) -> list[Path]:
 
 
 def planner_library() -> Path:
-    """Planner, G-code interpreter, frame codec, link library and driver, as on a microcontroller."""
+    """Planner, G-code interpreter, frame codec, link library and driver, as on a microcontroller; CSV."""
     folders = (paths.planner, paths.gcode, paths.protocol, paths.driver, paths.grbl)
-    return library("planner", folders, sources(*folders), "-O1")
+    files = [*sources(*folders), paths.engine / "passo_csv.c"]
+    return library("planner", [*folders, paths.engine], files, "-O1")
 
 
 def engine_sources() -> list[Path]:
@@ -80,6 +81,15 @@ def model_library() -> Path:
     folders = (paths.core, paths.protocol)
     engine = [*engine_sources(), paths.engine / "engine_model.c"]
     return library("model", [*folders, paths.engine], [*sources(*folders), *engine], *WHOLE)
+
+
+def preview_library() -> Path:
+    """The planner's library with queues in place of link and core."""
+    folders = (paths.planner, paths.gcode, paths.protocol, paths.driver, paths.grbl)
+    link = ("passo_host.c", "passo_link_frame.c", "passo_link_retry.c")
+    own = [paths.engine / name for name in ("passo_preview.c", "passo_preview_core.c")]
+    files = [path for path in sources(*folders) if path.name not in link]
+    return library("preview", [*folders, paths.engine], [*files, *own], "-O1", "-lm")
 
 
 def judge_library() -> Path:

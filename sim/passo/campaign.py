@@ -51,6 +51,7 @@ class Result:
     played: set[int] = field(default_factory=set)  # first case of each batch
     seconds: float = 0
     cpu_seconds: float = 0  # of all workers
+    canceled: bool = False
 
     def add(self, batch: Batch) -> None:
         """Count a batch; once, however often it was played."""
@@ -88,25 +89,30 @@ def carry_out(campaign: Campaign, client: Any, tell: Callable[[Result], None] = 
 
     places: dict[str, tuple[int, int]] = {}
     running = {submit(*one) for one in islice(waiting, IN_FLIGHT * workers)}
-    while running:
-        for future in _finished(running, client, lambda: tell(result)):
-            running.discard(future)
-            first, count = places.pop(future.key)
-            try:
-                result.add(future.result())
-            except (CancelledError, OSError) as error:
-                raise Failure(f"lost the connection to the cluster: {error}") from None
-            except KilledWorker:
-                # A case that ends its process is a failure; the others of its batch are not.
-                if count == 1:
-                    text = "the process that played it died, again and again"
-                    result.add(Batch(first, 1, Counter(moves=1), faults={first: Fault("crash", text)}))
-                else:
-                    running |= {submit(number, 1) for number in range(first, first + count)}
-            future.release()
-            running |= {submit(*following) for following in islice(waiting, 1)}
-            result.seconds = time.monotonic() - began
-            tell(result)
+    try:
+        while running:
+            for future in _finished(running, client, lambda: tell(result)):
+                running.discard(future)
+                first, count = places.pop(future.key)
+                try:
+                    result.add(future.result())
+                except (CancelledError, OSError) as error:
+                    raise Failure(f"lost the connection to the cluster: {error}") from None
+                except KilledWorker:
+                    # A case that ends its process is a failure; the others of its batch are not.
+                    if count == 1:
+                        text = "the process that played it died, again and again"
+                        result.add(Batch(first, 1, Counter(moves=1), faults={first: Fault("crash", text)}))
+                    else:
+                        running |= {submit(number, 1) for number in range(first, first + count)}
+                future.release()
+                running |= {submit(*following) for following in islice(waiting, 1)}
+                result.seconds = time.monotonic() - began
+                tell(result)
+    except KeyboardInterrupt:
+        client.cancel(list(running))
+        result.canceled = True
+        return result
     if result.moves != campaign.moves:
         raise Failure(f"only {result.moves} of {campaign.moves} moves were counted")
     return result

@@ -4,6 +4,7 @@
 import asyncio
 import logging
 import os
+import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -35,6 +36,11 @@ def prepare(engine: str) -> str:
     return __version__
 
 
+def _leave_interrupts() -> None:
+    """Of a worker: Ctrl-C in a terminal is for the process that waits for it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
 @contextmanager
 def local_cluster(jobs: int) -> Iterator[Any]:
     """A client of workers on this machine, one process each."""
@@ -55,6 +61,7 @@ def local_cluster(jobs: int) -> Iterator[Any]:
         Client(cluster) as client,
     ):
         client.wait_for_workers(jobs)
+        client.run(_leave_interrupts)
         yield client
 
 

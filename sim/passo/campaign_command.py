@@ -3,7 +3,6 @@
 
 import argparse
 import os
-import time
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -12,13 +11,12 @@ from passo.campaign import Campaign, Result, carry_out, shrink_all, summary_of
 from passo.campaign_cluster import check_workers, jobs_of, local_cluster, prepare, running_cluster
 from passo.campaign_moves import Case
 from passo.campaign_play import ENGINES
-from passo.console import console, stages, table
+from passo.console import Estimate, console, stages, table
 from passo.failure import BadInputError
 from passo.output import make_folder, write_json
 from passo.pulse_judge import Fault
 from passo.toolchain import paths
 
-EVERY = 10  # seconds between two lines of progress
 SHOWN = 10  # failures reported immediately
 NAME = "campaign.json"
 
@@ -40,7 +38,10 @@ def campaign_of(options: argparse.Namespace) -> tuple[Campaign, Where]:
 
 
 def run_campaign(campaign: Campaign, where: Where) -> bool:
-    """Carry it out, show and write the results; return whether there was no failure. Raises BadInputError."""
+    """Carry it out, show and write the results; return whether there was no failure.
+
+    Raises BadInputError; KeyboardInterrupt after Ctrl-C, with the results up to then.
+    """
     _check(campaign, where)
     summary = where.json or paths.results / NAME
     _check_folder(where.out, "--out")
@@ -51,15 +52,17 @@ def run_campaign(campaign: Campaign, where: Where) -> bool:
     with cluster as client:
         check_workers(client, campaign.engine)
         result = carry_out(campaign, client, _Progress(campaign))
-        if result.faults:
+        if result.faults and not result.canceled:
             print(f"shrinking {min(len(result.faults), SHOWN)} of {len(result.faults)} failures", flush=True)
-        shrunk = shrink_all(result, client)
+        shrunk = [] if result.canceled else shrink_all(result, client)
     make_folder(summary.parent)
     write_json(summary_of(result, shrunk), summary)
     _show(result)
     print(f"results: {summary}")
     if shrunk:
         _show_failures(campaign, shrunk, where.out)
+    if result.canceled:
+        raise KeyboardInterrupt
     return not result.faults
 
 
@@ -90,7 +93,7 @@ class _Progress:
 
     def __init__(self, campaign: Campaign):
         self.campaign, self.tell, self.told = campaign, stages(), set[int]()
-        self.last = time.monotonic()
+        self.estimate = Estimate(campaign.moves)
 
     def __call__(self, result: Result) -> None:
         for number in sorted(result.faults.keys() - self.told):
@@ -98,13 +101,12 @@ class _Progress:
             if len(self.told) <= SHOWN:
                 fault = result.faults[number]
                 self.tell(f"FAIL move {number}: {fault.kind}: {fault.text}")
-        now, done = time.monotonic(), result.moves == self.campaign.moves
-        if now - self.last > EVERY or done:
-            self.last = now
+        done = result.moves == self.campaign.moves
+        if self.estimate.is_due() or done:
             rate = result.moves / max(result.seconds, 1e-9)
-            left = "" if done else f", {(self.campaign.moves - result.moves) / rate:,.0f} s left"
+            left = "" if done else self.estimate.left(result.moves)
             counted = f"{result.moves:,} of {self.campaign.moves:,} moves, {len(result.faults)} failed"
-            self.tell(f"{counted}, {rate:.1f} moves/s{left}")
+            self.tell(f"{counted}, {rate:.1f} moves/s{left and ', '}{left}")
 
 
 def _show(result: Result) -> None:

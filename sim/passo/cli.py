@@ -2,16 +2,17 @@
 """The command `passo`. Subcommands import lazily, so that `passo --help` is fast."""
 
 import argparse
+import io
 import sys
 from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
-from passo import __version__, campaign_options, console_options, expand_options
+from passo import __version__, campaign_options, console_options, expand_options, part_options
 from passo.failure import BadInputError, Failure
 from passo.output import BROKEN_PIPE, FULL, drop_output
 
-PART_SUFFIXES = (".nc", ".ngc", ".gcode")
+PART_SUFFIXES = (".nc", ".ngc", ".gcode", ".tap")
 OK, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
 
@@ -20,6 +21,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     0 success, 1 mismatch or fault, 2 invalid input, 130 interrupted, 141 nobody reads its output any more.
     """
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # not if the shell has closed it
+            stream.reconfigure(errors="replace")  # of a terminal that lacks a letter
     try:
         try:
             return _command(arguments)
@@ -57,14 +61,14 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     run = commands.add_parser("run", help="run a move file or G-code and check every edge")
     run.set_defaults(command=_run)
-    run.add_argument("moves", type=Path, metavar="MOVES.toml", help="move file, or G-code: .nc .ngc .gcode")
     run.add_argument(
-        "--machine", type=Path, metavar="MACHINE.toml", help="with G-code: axes and limits (docs/gcode.md)"
+        "moves", type=Path, nargs="+", metavar="MOVES.toml", help=f"move file, or {part_options.PARTS}"
     )
     run.add_argument(
         "--engine",
         choices=console_options.ENGINES,
-        help="engine to run; both: RTL and model, compared edge for edge (default; G-code: model)",
+        help="engine to run; both: RTL and model, compared edge for edge "
+        "(default; G-code without waves: model)",
     )
     run.add_argument("--out", type=Path, metavar="DIR", help="output folder (default build/run/NAME)")
     run.add_argument(
@@ -77,7 +81,12 @@ def _parser() -> argparse.ArgumentParser:
     )
     run.add_argument("--plot", action="store_true", help="write motion.png, for G-code path.png")
     run.add_argument("--report", action="store_true", help="write report.html, zoomable to single clocks")
-    run.add_argument("--tools", type=Path, metavar="TOOLS.tbl", help=expand_options.TOOLS)
+    part_options.add(run)
+    preview = commands.add_parser("preview", help="time, extent, speeds and limits of G-code, in seconds")
+    preview.set_defaults(command=_preview)
+    preview.add_argument("parts", type=Path, nargs="+", metavar="PART.nc", help=part_options.PARTS)
+    preview.add_argument("--out", type=Path, metavar="DIR", help="output folder (default build/run/NAME)")
+    part_options.add(preview)
     expand, height_map = expand_options.add(commands)
     expand.set_defaults(command=_expand)
     height_map.set_defaults(command=_height_map)
@@ -144,20 +153,43 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _run(options: argparse.Namespace) -> int:
-    if options.moves.suffix.lower() in PART_SUFFIXES:
-        from passo.part_command import run_part
+    first = options.moves[0]
+    if first.suffix.lower() in PART_SUFFIXES or str(first) == "-":
+        from passo.part_command import Asked, run_part
 
-        if options.waves or options.report:
-            raise BadInputError("--waves and --report are for moves, not for G-code")
-        engine = options.engine or "model"
-        done = run_part(options.moves, options.machine, options.tools, engine, options.out, options.plot)
-        return OK if done else FAILED
+        asked = Asked(
+            options.machine,
+            options.tools,
+            options.engine or ("both" if options.waves else "model"),
+            options.out,
+            options.plot,
+            options.report,
+            options.waves,
+            options.look_ahead,
+            part_options.lines_of(options),
+        )
+        return OK if run_part(options.moves, asked) else FAILED
     from passo.run_command import Wanted, run_file
 
-    if options.machine or options.tools:
-        raise BadInputError(f"--machine and --tools are for G-code: {', '.join(PART_SUFFIXES)}")
+    part_options.refuse(options, PART_SUFFIXES)
+    if len(options.moves) > 1:
+        raise BadInputError(f"{options.moves[1]}: a move file runs alone")
     wanted = Wanted(options.waves, options.plot, options.report)
-    return OK if run_file(options.moves, options.engine or "both", options.out, wanted) else FAILED
+    return OK if run_file(first, options.engine or "both", options.out, wanted) else FAILED
+
+
+def _preview(options: argparse.Namespace) -> int:
+    from passo.preview_command import run_preview
+
+    done = run_preview(
+        options.parts,
+        options.machine,
+        options.tools,
+        options.out,
+        options.look_ahead,
+        part_options.lines_of(options),
+    )
+    return OK if done else FAILED
 
 
 def _expand(options: argparse.Namespace) -> int:

@@ -6,7 +6,7 @@ import time
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from typing import Any
 
-from passo.build import model_library, planner_library, rtl_library
+from passo.build import model_library, planner_library, preview_library, rtl_library
 from passo.console import console, progress, table
 from passo.demo_gantry import gantry_core, run_gantry
 from passo.machine_file import read_machine
@@ -112,7 +112,7 @@ def _build_all(pool: ProcessPoolExecutor) -> None:
     }
     cores = sorted(used, key=lambda core: (core.channels, core.encoders), reverse=True)
     waiting = [pool.submit(rtl_library, core) for core in cores]
-    waiting += [pool.submit(make) for make in (planner_library, model_library)]
+    waiting += [pool.submit(make) for make in (planner_library, model_library, preview_library)]
     for built in waiting:
         built.result()
 

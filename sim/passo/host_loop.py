@@ -21,6 +21,7 @@ class Steps:
     begins: list[int]  # of the motions
     ends: list[int]
     origin: int  # clock of that start
+    events: np.ndarray  # of the pins, EVENT
 
 
 class HostLoop:
@@ -59,4 +60,4 @@ class HostLoop:
             made = np.flatnonzero(moves)
             clocks.append(events["clock"][made].astype(np.int64) - origin)
             positions.append(np.cumsum(moves[made]))
-        return Steps(clocks, positions, (rises - origin).tolist(), (falls - origin).tolist(), origin)
+        return Steps(clocks, positions, (rises - origin).tolist(), (falls - origin).tolist(), origin, events)

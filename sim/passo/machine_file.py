@@ -29,6 +29,7 @@ from passo.table_values import (
     read_subtable,
     read_tables,
     read_word,
+    toml_error,
     within,
 )
 from passo.toolchain import need_repository
@@ -172,9 +173,12 @@ class MachineFile:
 def read_machine(path: Path) -> MachineFile:
     """Read and check a machine file; raises BadInputError."""
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8-sig"), parse_float=Written)
+        text = path.read_text(encoding="utf-8-sig")
+        data = tomllib.loads(text, parse_float=Written)
     except OSError as error:
         raise BadInputError(f"{path}: {error.strerror}") from None
+    except tomllib.TOMLDecodeError as error:
+        raise BadInputError(f"{path}: {toml_error(text, error)}") from None
     except (ValueError, RecursionError, ArithmeticError) as error:
         raise BadInputError(f"{path}: {str(error).splitlines()[0]}") from None
     try:

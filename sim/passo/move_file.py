@@ -31,6 +31,7 @@ from passo.table_values import (
     read_subtable,
     read_tables,
     read_time,
+    toml_error,
     within,
 )
 from passo.values import BadValueError, Written, meant, shown
@@ -87,7 +88,7 @@ def _parse(text: str, path: Path) -> Channels:
             raise MoveFileError(
                 f"{path}: this is G-code; move files are TOML (docs/gcode.md, docs/planning.md)"
             ) from None
-        raise MoveFileError(f"{path}: {str(error).splitlines()[0]}") from None
+        raise MoveFileError(f"{path}: {toml_error(text, error)}") from None
     try:
         return _file(path, data)
     except BadValueError as error:

@@ -7,7 +7,7 @@ from typing import Any
 
 from cffi import FFI
 
-from passo.build import console_library, cpu_library, planner_library
+from passo.build import console_library, cpu_library, planner_library, preview_library
 from passo.compiler import declarations
 from passo.toolchain import paths
 
@@ -48,6 +48,8 @@ HEADERS = (
     paths.engine / "passo_engine.h",
     paths.engine / "passo_terminal.h",
     paths.engine / "passo_judge.h",
+    paths.engine / "passo_preview.h",
+    paths.engine / "passo_csv.h",
     paths.console / "passo_decimal.h",
     paths.engine / "passo_cpu.h",
 )
@@ -71,6 +73,12 @@ def load(library: Path) -> Any:
 def planner() -> Any:
     """The planner, the frame codec, the link library and the driver."""
     return load(planner_library())
+
+
+@cache
+def previewer() -> Any:
+    """The planner, the driver and a core that makes no steps."""
+    return load(preview_library())
 
 
 @cache

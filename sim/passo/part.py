@@ -2,43 +2,68 @@
 """A part of G-code on a machine: its lines are checked, then played on an engine."""
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from passo.driver import Driver
+from passo.driver import Driver, DriverError
 from passo.engine import Engine
 from passo.expand.expander import Options, expand_file, needs_expanding
 from passo.expand.place import Place
-from passo.expand.refusals import explain_text
 from passo.expand.tools import Tool, lengths
 from passo.failure import BadInputError
-from passo.gcode import NANOMETERS, Gcode, GcodeError, has_words, lines, set_tool_lengths
+from passo.gcode import NANOMETERS, GcodeError, has_words, lines
 from passo.host_loop import HostLoop
 from passo.machine_file import MachineFile
-from passo.native import planner
+from passo.native import ffi
 from passo.pair_engine import PairEngine
 from passo.path import LOOK_AHEAD
+from passo.preview import Checked, Planned, check_lines, new_gcode, plan_lines, position_of
 from passo.program import Program
+from passo.run import parameters_for
 
 LOOPS_PER_SECOND = 1000  # polls of the driver
 SLEWS_PER_SECOND = 20  # of hold and stop, from full speed
+STANDARD_INPUT, STDIN = Path("-"), Path("stdin")
+REFUSED_MOST = 20  # bad lines that are reported
 PATIENCE = 3600  # simulated seconds without an end of the path that are too many
 
 
 @dataclass(frozen=True)
-class Part:
-    """The checked lines of a file."""
+class Begin:
+    """Where a part begins: at 0, or behind lines that were executed without moving."""
 
-    path: Path
+    gcode: Any  # `struct passo_gcode`
+    steps: list[int]  # of the motors
+    place: np.ndarray  # of the axes, mm: where these steps are
+
+
+@dataclass(frozen=True)
+class Part:
+    """The checked lines of a program."""
+
+    path: Path  # of its first file
     lines: list[bytes]
+    places: list[Place]  # of each line
     chords: int  # with those of the arcs
     end: tuple[int, ...]  # nm
     unread: int  # lines that say something behind the end of the program
     tools: dict[int, float]  # lengths in mm
+    begin: Begin
+
+    @property
+    def name(self) -> str:
+        """For folders and summaries."""
+        return self.path.stem
+
+    @property
+    def ends(self) -> np.ndarray:
+        """Where the last line ends, in mm from where the part begins."""
+        return np.array(self.end) / NANOMETERS - self.begin.place
 
 
 @dataclass(frozen=True)
@@ -54,6 +79,9 @@ class Played:
     drained: int
     cause: str
     matched_edges: int | None
+    events: np.ndarray  # of the pins, EVENT
+    origin: int  # clock of the start of the first motion
+    canceled: str = ""  # where, if it was
 
     @cached_property
     def seconds(self) -> float:
@@ -65,11 +93,13 @@ class Played:
         found = []
         if self.cause != "NONE":
             found.append(f"the core stopped: {self.cause}")
+        if self.canceled:
+            return [*found, f"canceled at {self.canceled}"]
         if self.drained:
             found.append(f"{self.drained} substeps were missing at the end of a ramp")
         settings = self.machine.settings
         axes = len(settings.axes)
-        ends = settings.motors.map(axes) @ np.array(self.part.end[:axes]) / NANOMETERS * settings.scales
+        ends = settings.motors.map(axes) @ self.part.ends[:axes] * settings.scales
         for motor, exact in enumerate(ends.tolist()):
             made = int(self.positions[motor][-1]) if len(self.positions[motor]) else 0
             if abs(made - exact) > 0.5 + 1e-6 or self.end[motor] != made:
@@ -80,41 +110,119 @@ class Played:
         return found
 
 
-def read_part(path: Path, machine: MachineFile, tools: dict[int, Tool] | None = None) -> Part:
-    """Check all lines of a file, expanded if it needs that; raises BadInputError with the first bad line."""
+@dataclass(frozen=True)
+class Lines:
+    """Which lines of a file are played, counted from 1; the modes of those before are in force."""
+
+    first: int = 1
+    last: int | None = None
+
+
+def read_part(
+    path: Path | Sequence[Path],
+    machine: MachineFile,
+    tools: dict[int, Tool] | None = None,
+    only: Lines | None = None,
+) -> Part:
+    """Check all lines of a file, or of several in turn, expanded where they need that.
+
+    Each file ends at its M2 or M30. Raises BadInputError with all bad lines.
+    """
+    files = [path] if isinstance(path, Path) else list(path)
+    if only and len(files) > 1:
+        raise BadInputError("--from and --to count the lines of one file")
+    table = lengths(tools or {})
+    gcode = new_gcode(machine.gcode, table)
+    begin = _begin(gcode, machine)
+    whole, places, refused, chords, unread = [], [], [], 0, 0
+    for file in files:
+        text, where = _read(file, machine, tools or {})
+        if only:
+            before, text, where = _split(file, text, where, only)
+            checked = check_lines(before, gcode)
+            refused += _told(checked, before, where, machine)
+            begin = _begin(gcode, machine)
+            before, where = [], where[len(before) :]
+            if checked.ended:
+                raise BadInputError(f"{file}: line {only.first} is behind the end of the program")
+        checked = check_lines(text, gcode)
+        refused += _told(checked, text, where, machine)
+        chords += checked.chords
+        unread += checked.unread
+        whole += text[: checked.lines]
+        places += where[: checked.lines]
+    if refused:
+        more = len(refused) - REFUSED_MOST
+        raise BadInputError("\n".join([*refused[:REFUSED_MOST], *([f"and {more} more lines"] * (more > 0))]))
+    first = STDIN if files[0] == STANDARD_INPUT else files[0]
+    return Part(first, whole, places, chords, position_of(gcode), unread, table, begin)
+
+
+def _read(path: Path, machine: MachineFile, tools: dict[int, Tool]) -> tuple[list[bytes], list[Place]]:
+    """The lines of a file and their places."""
     try:
-        data = path.read_bytes()
+        data = sys.stdin.buffer.read() if path == STANDARD_INPUT else path.read_bytes()
     except OSError as error:
         raise BadInputError(f"{path}: {error.strerror}") from None
-    text, places = lines(data), None
+    name = STDIN if path == STANDARD_INPUT else path
+    text = lines(data)
     if needs_expanding(data):
-        expanded = expand_file(path, Options(machine.gcode, tools or {}, at_zero=True), _say)
+        expanded = expand_file(name, Options(machine.gcode, tools, at_zero=True), _say, data)
         text, places = [f"{line.text}\n".encode() for line in expanded], [line.place for line in expanded]
+    else:
+        places = [Place(name, number) for number in range(1, len(text) + 1)]
     if not any(map(has_words, text)):
-        raise BadInputError(f"{path}: the file has no G-code")
-    gcode, chords, table = Gcode(machine.gcode), 0, lengths(tools or {})
-    set_tool_lengths(gcode.c, table)
-    for number, line in enumerate(text, 1):
-        place = places[number - 1] if places else Place(path, number)
-        try:
-            gcode.execute(line)
-        except GcodeError as error:
-            why = explain_text(error, line.decode("utf-8", "replace"), machine.gcode.axes)
-            raise BadInputError(f"{place}: {why}") from None
-        for action in gcode.actions():
-            if action.kind == planner().PASSO_GCODE_CHANGE:
-                planner().passo_gcode_load(gcode.c, action.tool)
-            if action.kind == planner().PASSO_GCODE_PROBE:
-                raise BadInputError(f"{place}: no probe is fitted")
-            if action.kind == planner().PASSO_GCODE_END:
-                unread = sum(map(has_words, text[number:]))
-                return Part(path, text[:number], chords, gcode.position, unread, table)
-            chords += action.kind == planner().PASSO_GCODE_LINE
-    return Part(path, text, chords, gcode.position, 0, table)
+        raise BadInputError(f"{name}: the file has no G-code")
+    if not text[-1].endswith(b"\n"):
+        text[-1] += b"\n"  # another file may follow
+    return text, places
+
+
+def _split(
+    path: Path, text: list[bytes], places: list[Place], only: Lines
+) -> tuple[list[bytes], list[bytes], list[Place]]:
+    """The lines before those that are played, these, and the places of both."""
+    own = [place.line if place.path == places[0].path else 0 for place in places]
+    first = next((k for k, line in enumerate(own) if line >= only.first), None)
+    if first is None:
+        raise BadInputError(f"{path}: there is no line {only.first}")
+    last = max((k for k, line in enumerate(own) if only.last is None or line <= only.last), default=-1)
+    if last < first:
+        raise BadInputError(f"{path}: no line is from {only.first} to {only.last}")
+    return text[:first], text[first : last + 1], places[: last + 1]
+
+
+def _begin(gcode: Any, machine: MachineFile) -> Begin:
+    """Where the interpreter is, in whole steps."""
+    settings = machine.settings
+    rows, scales = settings.motors.map(len(settings.axes)), np.array(settings.scales)
+    at = np.array(position_of(gcode)) / NANOMETERS
+    steps = np.rint(rows @ at * scales)
+    kept = ffi().new("struct passo_gcode *", gcode[0])
+    return Begin(kept, steps.astype(int).tolist(), settings.motors.axes_of((steps / scales)[None])[0])
+
+
+def _told(checked: Checked, text: list[bytes], places: list[Place], machine: MachineFile) -> list[str]:
+    """A sentence for each refused line."""
+    return [
+        f"{places[found.line]}: {found.why(text[found.line], machine.gcode)}" for found in checked.refused
+    ]
 
 
 def _say(text: str) -> None:
     print(text, file=sys.stderr)
+
+
+def plan_part(
+    part: Part,
+    machine: MachineFile,
+    look_ahead: int = LOOK_AHEAD,
+    progress: Callable[[int], None] = lambda lines: None,
+) -> Planned:
+    """Plan all lines, as play_part() does; `progress` is called with the lines taken."""
+    core = parameters_for(len(machine.motors))
+    begin, polls = part.begin, LOOPS_PER_SECOND
+    return plan_lines(part.lines, machine, begin.gcode, begin.steps, core, look_ahead, polls, progress)
 
 
 def play_part(
@@ -132,27 +240,38 @@ def play_part(
     slew = machine.clock_hz // SLEWS_PER_SECOND
     driver.call("configure_motion", slew, slew, 1 << 16)
     program = Program(driver, machine.settings, machine.gcode, look_ahead)
-    set_tool_lengths(program.c.gcode, part.tools)
+    program.begin(part.begin.gcode, part.begin.steps)
     loop = HostLoop(engine, machine.clock_hz // LOOPS_PER_SECOND)
-    waiting = iter(part.lines)
+    waiting, taken = iter(part.lines), 0
     last, quiet = -1, engine.clock
-    while not program.is_done:
-        while program.is_ready:
-            if (line := next(waiting, None)) is not None:
-                program.line(line)
-            else:
-                program.end()
-            program.poll()
-        loop.turn(program.poll, lambda: program.rests)
-        if program.chords != last:
-            last, quiet = program.chords, engine.clock
-            progress(last)
-        if engine.clock - quiet > PATIENCE * machine.clock_hz:
-            raise BadInputError(f"{part.path}: timeout: no motion for an hour of simulated time")
+    canceled = ""
+    try:
+        while not program.is_done:
+            while program.is_ready:
+                if (line := next(waiting, None)) is not None:
+                    program.line(line)
+                    taken += 1
+                else:
+                    program.end()
+                program.poll()
+            loop.turn(program.poll, lambda: program.rests)
+            if program.chords != last:
+                last, quiet = program.chords, engine.clock
+                progress(last)
+            if engine.clock - quiet > PATIENCE * machine.clock_hz:
+                raise BadInputError(f"{part.path}: timeout: no motion for an hour of simulated time")
+    except (GcodeError, DriverError) as error:
+        raise BadInputError(f"{part.places[taken - 1]}: {error}") from None
+    except KeyboardInterrupt:
+        canceled = str(part.places[taken - 1])
     loop.run(8 * sum(vars(machine.pins).values()))
     snapshot, end = driver.snapshot(), driver.positions()[:motors]
     cause, matched = driver.cause.name, getattr(engine, "matched_edges", None)
     steps = loop.steps(motors)
-    motions = list(zip(steps.begins, steps.ends, strict=True))
+    ends = [*steps.ends, engine.clock - steps.origin][: len(steps.begins)]  # a canceled one continues
+    motions = list(zip(steps.begins, ends, strict=True))
     drained = int(snapshot.drained)
-    return Played(part, machine, steps.clocks, steps.positions, motions, end, drained, cause, matched)
+    return Played(
+        *(part, machine, steps.clocks, steps.positions, motions, end, drained, cause, matched),
+        *(steps.events, steps.origin, canceled),
+    )

@@ -2,55 +2,91 @@
 """`passo run PART.nc --machine MACHINE.toml`: from G-code to a folder of results."""
 
 import sys
-from collections.abc import Callable
-from dataclasses import asdict
+from collections.abc import Callable, Sequence
+from contextlib import nullcontext
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from passo.axis_judge import Share, faults
 from passo.console import progress
+from passo.course import Course
 from passo.expand.tools import read_tools
 from passo.failure import BadInputError
 from passo.gcode import NANOMETERS
 from passo.machine_file import MachineFile, read_machine
 from passo.output import empty_folder, write_json
-from passo.part import Part, Played, play_part, read_part
+from passo.part import Lines, Part, Played, plan_part, play_part, read_part
 from passo.part_judge import greatest, shares_of
+from passo.part_page import write_part_page
+from passo.path import LOOK_AHEAD
+from passo.report import write_rows
 from passo.run import open_engine, parameters_for
 from passo.toolchain import paths
+from passo.waves import FILES, Window, check_window, recorded, say_waves, wanted_window, write_view
 
-SUMMARY, PICTURE = "summary.json", "path.png"
+SUMMARY, PICTURE, PULSES, PAGE = "summary.json", "path.png", "pulses.csv", "report.html"
 
 
-def run_part(
-    path: Path,
-    machine_path: Path | None,
-    tools: Path | None,
-    engine: str,
-    out: Path | None,
-    plot: bool,
-) -> bool:
-    """Play a part, write the results and say where they are; return whether the motion was exact."""
-    if machine_path is None:
-        raise BadInputError(f"{path}: G-code needs --machine MACHINE.toml (docs/gcode.md)")
-    machine = read_machine(machine_path)
-    part = read_part(path, machine, read_tools(tools))
-    out = out or paths.results / "run" / path.stem
-    with progress(path.name, part.chords) as report:
-        played, judged, summary = play_to(out, part, machine, engine, plot, report)
+@dataclass(frozen=True)
+class Asked:
+    """What `passo run` was asked for."""
+
+    machine: Path | None
+    tools: Path | None = None
+    engine: str = "model"
+    out: Path | None = None
+    plot: bool = False
+    report: bool = False
+    waves: str | None = None
+    look_ahead: int = LOOK_AHEAD
+    only: Lines | None = None
+
+
+def run_part(files: Sequence[Path], asked: Asked) -> bool:
+    """Play a part, write the results and say where they are; return whether the motion was exact.
+
+    Ctrl-C ends it: KeyboardInterrupt, once the results up to then are written.
+    """
+    machine = machine_of(files, asked.machine)
+    window = wanted_window(asked.waves, asked.engine)
+    part = read_part(files, machine, read_tools(asked.tools), asked.only)
+    out = asked.out or paths.results / "run" / part.name
+    with progress(part.path.name, part.chords) as report:
+        played, judged, summary = play_to(out, part, machine, asked.engine, asked, report, window)
     found = summary["problems"]
     for problem in found:
-        print(f"{path}: {problem}", file=sys.stderr)
-    if part.unread:
-        print(f"{path}: {part.unread} lines behind the end of the program are not read", file=sys.stderr)
+        print(f"{part.path}: {problem}", file=sys.stderr)
+    say_unread(part)
     if not played.motions:
-        print(f"{path}: nothing moved", file=sys.stderr)
+        print(f"{part.path}: nothing moved", file=sys.stderr)
     elif not found:
-        print(f"{path.name}: {len(part.lines)} lines, {part.chords} chords in {played.seconds:.6g} s")
+        print(f"{part.path.name}: {len(part.lines)} lines, {part.chords} chords in {played.seconds:.6g} s")
         limits = ", ".join(_limit(machine, share) for share in greatest(judged).values())
         print(f"greatest share of a limit: {limits}")
-    print(f"results: {', '.join(str(out / name) for name in (SUMMARY, PICTURE) if (out / name).exists())}")
+    print(f"results: {', '.join(str(out / name) for name in (PULSES, SUMMARY) if (out / name).exists())}")
+    if window:
+        say_waves(out)
+    for name in [PICTURE] * asked.plot + [PAGE] * asked.report:
+        print(f"open: {out / name}")
+    if played.canceled:
+        raise KeyboardInterrupt
     return not found
+
+
+def machine_of(files: Sequence[Path], path: Path | None) -> MachineFile:
+    """The machine that a part needs; raises BadInputError."""
+    if path is None:
+        raise BadInputError(f"{files[0]}: G-code needs --machine MACHINE.toml (docs/gcode.md)")
+    return read_machine(path)
+
+
+def say_unread(part: Part) -> None:
+    """Say that a program has more lines than it reads."""
+    if part.unread:
+        print(f"{part.path}: {part.unread} lines behind the end of the program are not read", file=sys.stderr)
 
 
 def play_to(
@@ -58,21 +94,43 @@ def play_to(
     part: Part,
     machine: MachineFile,
     engine: str,
-    plot: bool = True,
+    asked: Asked | None = None,
     report: Callable[[int], None] = lambda chords: None,
+    window: Window | None = None,
 ) -> tuple[Played, list[Share], dict[str, Any]]:
     """Play a part and write the results to a folder; what left the pins, its limits, and its summary."""
-    empty_folder(out, (SUMMARY, PICTURE))
-    with open_engine(engine, parameters_for(len(machine.motors)), machine.clock_hz) as core:
-        played = play_part(part, machine, core, report)
-    judged = shares_of(played)
+    asked = asked or Asked(None, plot=True)
+    course = Course(plan_part(part, machine, asked.look_ahead), part.begin.place)
+    if window:
+        check_window(window, machine.clock_hz, round(course.seconds * machine.clock_hz))
+    core_of = parameters_for(len(machine.motors))
+    with open_engine(engine, core_of, machine.clock_hz, window is not None) as core:
+        empty_folder(out, (SUMMARY, PICTURE, PULSES, PAGE, *FILES))
+        with recorded(core, window, out) if window else nullcontext():
+            played = play_part(part, machine, core, report, asked.look_ahead)
+    if window:
+        write_view(out, core_of, machine.clock_hz, {0: len(machine.motors)}, played.origin)
+    judged = [] if played.canceled else shares_of(played)  # it does not come to rest
     summary = _summary(part, machine, played, engine, judged, played.problems() + faults(judged))
+    summary |= {"tools": course.tools(), "levels": course.levels()}
+    write_pulses(played, out / PULSES)
     write_json(summary, out / SUMMARY)
-    if plot:
+    if asked.plot:
         from passo.part_plot import plot_part
 
         plot_part(played, out / PICTURE)
+    if asked.report:
+        write_part_page(played, summary, out / PAGE)
     return played, judged, summary
+
+
+def write_pulses(played: Played, path: Path) -> None:
+    """Write a row per step, as of a move file."""
+    rows = [
+        np.stack([clocks, np.full(len(clocks), motor), np.diff(counts, prepend=0)])
+        for motor, (clocks, counts) in enumerate(zip(played.clocks, played.positions, strict=True))
+    ]
+    write_rows(("clock", "axis", "direction"), np.concatenate(rows, axis=1), path)
 
 
 def _limit(machine: MachineFile, share: Share) -> str:
@@ -102,4 +160,15 @@ def _summary(
         "motors": machine.motors,
         "pulses": [len(clocks) for clocks in played.clocks],
         "limits": {name: asdict(share) for name, share in greatest(judged).items()},
+        "highest": _highest(machine, judged),
     }
+
+
+def _highest(machine: MachineFile, judged: list[Share]) -> dict[str, dict[str, float]]:
+    """What axes and motors with limits reached at the pins: speed in mm/s, acceleration in mm/s^2, jerk."""
+    found: dict[str, dict[str, float]] = {name: {} for name in machine.limited}
+    limits = [own for _, own in machine.settings.limits()]
+    for share in judged:
+        limit = float(getattr(limits[share.axis], share.name))
+        found[machine.limited[share.axis]][share.name] = share.share * limit
+    return found

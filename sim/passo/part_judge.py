@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Checks the pulses of a part against the limits of its machine."""
 
+import numpy as np
+
 from passo.axis_judge import NAMES, Marks, Share, shares
 from passo.gcode import NANOMETERS, Gcode
 from passo.machine_file import MachineFile
@@ -10,14 +12,16 @@ from passo.path_rounding import Line
 
 
 def path_of(part: Part, machine: MachineFile) -> list[Line]:
-    """The lines of a checked part, with the chords of its arcs; without their feeds."""
+    """The lines of a checked part, with the chords of its arcs, from where it begins; without their feeds."""
     gcode, axes = Gcode(machine.gcode), len(machine.settings.axes)
+    gcode.c[0], origin = part.begin.gcode[0], part.begin.place
     found: list[Line] = []
     for line in part.lines:
         gcode.execute(line)
         for action in gcode.actions():
             if action.kind == planner().PASSO_GCODE_LINE:
-                found.append(([nm / NANOMETERS for nm in action.target[0:axes]], None))
+                target = np.array(list(action.target[0:axes])) / NANOMETERS - origin
+                found.append((target.tolist(), None))
     return found
 
 

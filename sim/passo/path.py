@@ -12,11 +12,11 @@ from passo.build import Parameters
 from passo.driver import Driver, DriverError
 from passo.moves import q32
 from passo.native import ffi, planner
+from passo.part_options import LOOK_AHEAD as LOOK_AHEAD
 from passo.plan import PlanError
 
 NOT_MOVING = 0xFFFFFFFF  # ticks held by a core that does not move yet
 OVERRIDE_ONE = 1 << 16
-LOOK_AHEAD = 48  # lines, as on an STM32F103
 
 
 @dataclass(frozen=True)

@@ -217,7 +217,7 @@ def plot_lines(ax: Axes, run: Run, begin: int, end: int, title: str, directions:
     ax.spines["left"].set_visible(False)
     ax.set_title(title)
     ax.set_xlabel("ms")
-    ax.set_xlim(begin * scale, end * scale)
+    ax.set_xlim(begin * scale, max(end, begin + 1) * scale)
 
 
 def trace(run: Run, signal: str, axis: int, begin: int, end: int) -> tuple[np.ndarray, np.ndarray]:

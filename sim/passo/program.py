@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Python binding of the player of whole programs (stm32_bridge/grbl/passo_program.h)."""
 
+from collections.abc import Sequence
+from typing import Any
+
 from passo.driver import Driver, DriverError
 from passo.gcode import GcodeError, GcodeSettings
 from passo.native import ffi, planner
@@ -21,6 +24,11 @@ class Program:
         settings.path = path.struct(driver.engine.parameters)[0]
         settings.gcode = gcode.struct()[0]
         self._check("open", self._c.passo_program_open(self.c, driver.c, settings, self._items, look_ahead))
+
+    def begin(self, gcode: Any, steps: Sequence[int]) -> None:
+        """Begin with the modes of a `struct passo_gcode`, at these positions of the motors."""
+        self.c.gcode = gcode[0]
+        self._c.passo_path_restart(ffi().addressof(self.c, "path"), ffi().new("int32_t[8]", list(steps)))
 
     @property
     def is_ready(self) -> bool:

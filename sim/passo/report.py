@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Output files of a run: pulses.csv and summary.json."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -8,12 +9,15 @@ import numpy as np
 
 from passo.curve import step_errors
 from passo.moves import Channels
+from passo.native import ffi, planner
 from passo.output import complete
 from passo.plan import Q48
 from passo.pulse_judge import faults
 from passo.run import Run
 from passo.scene_run import SceneRun
 from passo.verdict import verdict_of
+
+ROWS = 1 << 16  # that are written in one go
 
 
 def write_pulses(runs: list[Run], path: Path) -> None:
@@ -27,13 +31,23 @@ def write_pulses(runs: list[Run], path: Path) -> None:
             clocks, directions = run.steps(axis)
             place = (np.full(len(clocks), n) for n in (run.file.channel, axis))
             parts.append(np.stack([clocks + run.late, *place, directions.astype(np.int64)]))
-    rows = np.concatenate(parts, axis=1)
-    rows = rows[:, np.lexsort((rows[2], rows[1], rows[0]))]
     columns = ["clock", "channel", "axis", "direction"]
     if not runs[-1].file.channel:
-        rows, columns = np.delete(rows, 1, axis=0), ["clock", "axis", "direction"]
-    with complete(path) as part, part.open("w") as file:
-        file.writelines(",".join(map(str, row)) + "\n" for row in [columns, *rows.T.tolist()])
+        parts, columns = [np.delete(rows, 1, axis=0) for rows in parts], ["clock", "axis", "direction"]
+    write_rows(columns, np.concatenate(parts, axis=1), path)
+
+
+def write_rows(columns: Sequence[str], numbers: np.ndarray, path: Path) -> None:
+    """Write whole numbers, column x row, as CSV, sorted by the first column; equal ones keep their order."""
+    rows = np.ascontiguousarray(numbers.T[np.argsort(numbers[0], kind="stable")], np.int64)
+    c = planner()
+    with complete(path) as part, part.open("wb") as file:
+        file.write(",".join(columns).encode() + b"\n")
+        for begin in range(0, len(rows), ROWS):
+            some = rows[begin : begin + ROWS]
+            text = ffi().new("char[]", some.size * c.PASSO_CSV_CHARACTERS)
+            count = c.passo_csv_write(text, ffi().cast("int64_t *", some.ctypes.data), *some.shape)
+            file.write(ffi().buffer(text, count))
 
 
 def problems(runs: list[Run]) -> list[str]:

@@ -31,15 +31,16 @@ SCRIPTS = (
 
 def write_page(channels: Channels, runs: list[Run], engine: str, path: Path) -> None:
     """Write the report of a run."""
-    _write(channels.name, page_data(channels, runs, engine), path)
+    write_data(channels.name, page_data(channels, runs, engine), path)
 
 
 def write_scene_page(channels: Channels, run: SceneRun, engine: str, path: Path) -> None:
     """The same of a move file with a machine."""
-    _write(channels.name, scene_data(channels, run, engine), path)
+    write_data(channels.name, scene_data(channels, run, engine), path)
 
 
-def _write(name: str, data: tuple[dict[str, Any], str], path: Path) -> None:
+def write_data(name: str, data: tuple[dict[str, Any], str], path: Path) -> None:
+    """Write a page of facts and edges."""
     facts, edges = data
     # `</` would end the element that holds it.
     text = json.dumps(facts, allow_nan=False, separators=(",", ":")).replace("</", "<\\/")

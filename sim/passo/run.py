@@ -39,6 +39,7 @@ class Run:
     matched_edges: int | None  # edges that agree; None: only one engine
     clocks: int  # simulated in total
     seconds: float  # of real time
+    canceled: bool = False
     since: int | None = None  # clock from which the channels of the file count; None: the start
     start: int = field(init=False)  # clock at which the motion started
     total_clocks: int = field(init=False)  # length of the motion
@@ -80,6 +81,8 @@ class Run:
 
     def problems(self) -> list[str]:
         """Deviations from the plan, one sentence each; empty if the motion was exact."""
+        if self.canceled:
+            return [f"canceled after {self.moved_clocks} clocks"]
         found = []
         if self.state.cause != Cause.NONE:
             found.append(f"the core stopped: {self.state.cause.name}: {self.state.cause.description}")
@@ -194,10 +197,14 @@ def execute_channels(
             advance(tick)
         start = engine.clock
         engine.sync(True)
-    while any(channel.moves for channel in used):
-        go_on()
-        for channel in used:
-            channel.poll()
+    canceled = False
+    try:
+        while any(channel.moves for channel in used):
+            go_on()
+            for channel in used:
+                channel.poll()
+    except KeyboardInterrupt:
+        canceled = True
     # The last pulse and a change of DIR may still be in progress.
     pins = [file.pins for file in channels.files]
     advance(8 * max(sum((pin.step_high, pin.step_low, pin.dir_setup, pin.dir_hold)) for pin in pins))
@@ -220,6 +227,7 @@ def execute_channels(
             matched_edges=engine.matched_edges if isinstance(engine, PairEngine) else None,
             clocks=engine.clock - start,
             seconds=time.monotonic() - began,
+            canceled=canceled,
         )
         for channel, (positions, snapshot) in zip(used, ends, strict=True)
     ]

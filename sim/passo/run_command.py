@@ -6,7 +6,7 @@ from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 
-from passo.console import progress
+from passo.console import passing, progress
 from passo.engine import DifferenceError
 from passo.failure import BadInputError
 from passo.move_file import read_channels
@@ -20,7 +20,7 @@ from passo.scene_plan import plan_sections, scene_parameters
 from passo.scene_report import summarize_scene, write_scene_pulses
 from passo.toolchain import paths
 from passo.verdict import STOPPED, scene_verdict
-from passo.waves import FILES, Window, read_window, recorded, write_view
+from passo.waves import FILES, Window, check_window, recorded, say_waves, wanted_window, write_view
 
 PULSES, SUMMARY, PICTURE, PAGE = "pulses.csv", "summary.json", "motion.png", "report.html"
 
@@ -35,8 +35,11 @@ class Wanted:
 
 
 def run_file(moves: Path, engine: str, out: Path | None, wanted: Wanted) -> bool:
-    """Run the moves, write the results and say where they are; return whether the motion was exact."""
-    window = _read_window(wanted.waves, engine)
+    """Run the moves, write the results and say where they are; return whether the motion was exact.
+
+    Ctrl-C ends it: KeyboardInterrupt, once the results up to then are written.
+    """
+    window = wanted_window(wanted.waves, engine)
     file = read_channels(moves)
     if file.setup:
         if window:
@@ -45,7 +48,7 @@ def run_file(moves: Path, engine: str, out: Path | None, wanted: Wanted) -> bool
     parameters = parameters_of(file)
     plans = plan_channels(file, parameters)
     if window:
-        _check_window(window, file, plans)
+        check_window(window, file.clock_hz, _longest(plans))
     out = out or paths.results / "run" / file.name
     with open_engine(engine, parameters, file.clock_hz, window is not None) as core:
         _clear(out)
@@ -57,7 +60,8 @@ def run_file(moves: Path, engine: str, out: Path | None, wanted: Wanted) -> bool
             write_json({"name": file.name, "ok": False, "difference": vars(error)}, out / SUMMARY)
             raise
         if window:
-            write_view(out, parameters, file, runs[0].start - runs[0].late)
+            axes = {own.channel: own.axes for own in file.files}
+            write_view(out, parameters, file.clock_hz, axes, runs[0].start - runs[0].late)
     write_pulses(runs, out / PULSES)
     write_json(summarize_channels(file, runs, engine), out / SUMMARY)
     if wanted.plot:
@@ -68,7 +72,10 @@ def run_file(moves: Path, engine: str, out: Path | None, wanted: Wanted) -> bool
         from passo.report_page import write_page
 
         write_page(file, runs, engine, out / PAGE)
-    return _conclude(file, runs, out, window, wanted)
+    exact = _conclude(file, runs, out, window, wanted)
+    if runs[0].canceled:
+        raise KeyboardInterrupt
+    return exact
 
 
 def _run_scene(file: Channels, engine: str, out: Path, wanted: Wanted) -> bool:
@@ -78,7 +85,8 @@ def _run_scene(file: Channels, engine: str, out: Path, wanted: Wanted) -> bool:
     with open_engine(engine, parameters, file.clock_hz) as core:
         _clear(out)
         try:
-            run = Scene(file, core).run()
+            with passing(file.name) as report:
+                run = Scene(file, core, lambda clock: report(clock / file.clock_hz)).run()
         except DifferenceError as error:
             write_json({"name": file.name, "ok": False, "difference": vars(error)}, out / SUMMARY)
             raise
@@ -115,23 +123,6 @@ def _longest(plans: list[list[Plan]]) -> int:
     return max(sum(plan.clocks for plan in own) for own in plans)
 
 
-def _read_window(waves: str | None, engine: str) -> Window | None:
-    if waves is None:
-        return None
-    if engine == "model":
-        raise BadInputError("--waves needs the RTL: --engine both or rtl")
-    try:
-        return read_window(waves)
-    except ValueError as error:
-        raise BadInputError(f"--waves: {error}") from None
-
-
-def _check_window(window: Window, file: Channels, plans: list[list[Plan]]) -> None:
-    clocks = _longest(plans)
-    if window.clocks(file.clock_hz)[0] >= clocks:
-        raise BadInputError(f"--waves: the motion takes only {clocks / file.clock_hz:.6g} s")
-
-
 def _clear(out: Path) -> None:
     """Make the folder and delete the results of an earlier run."""
     pictures = [path.name for path in out.glob("motion_channel_[0-7].png")]
@@ -152,8 +143,7 @@ def _conclude(file: Channels, runs: list[Run], out: Path, window: Window | None,
         print(f"{file.name}: {steps} steps{where} in {clocks} clocks ({seconds:.6g} s){edges}")
     print(f"results: {out / PULSES}, {out / SUMMARY}")
     if window:
-        fst, view = (out / name for name in FILES[:2])
-        print(f"waves, {fst.stat().st_size / 1e6:.1f} MB; open: gtkwave {view}   or: surfer {fst}")
+        say_waves(out)
     for name in [PICTURE] * wanted.plot + [PAGE] * wanted.report:
         print(f"open: {out / name}")
     return not found

@@ -9,8 +9,7 @@ import numpy as np
 
 from passo.curve import Curve
 from passo.move_forms import EventInput, EventOverride, EventSlip, MachineEncoder
-from passo.output import complete
-from passo.report import summary_head
+from passo.report import summary_head, write_rows
 from passo.scene_figures import energies, thread_figures
 from passo.scene_run import Happened, SceneRun, Section, Stop
 from passo.verdict import scene_verdict
@@ -75,10 +74,7 @@ def write_scene_pulses(run: SceneRun, path: Path) -> None:
         ],
         axis=1,
     )
-    rows = rows[:, np.lexsort((rows[1], rows[0]))]
-    with complete(path) as part, part.open("w") as file:
-        file.write("clock,axis,direction\n")
-        file.writelines(",".join(map(str, row)) + "\n" for row in rows.T.tolist())
+    write_rows(("clock", "axis", "direction"), rows, path)
 
 
 def summarize_scene(run: SceneRun, engine: str) -> dict[str, Any]:

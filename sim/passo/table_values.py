@@ -5,6 +5,7 @@ Numbers are read exactly as written, as fractions. Times are seconds, or a text 
 Errors raise BadValueError.
 """
 
+import re
 from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
@@ -14,7 +15,19 @@ from passo.move_forms import NUMBER_MAX, SIGNED_MAX, WHOLE_MAX
 from passo.values import BadValueError, check_number, meant, parse_time, shown
 
 Table = dict[str, Any]
+LINE = re.compile(r"\(at line (\d+), ")
+UNQUOTED = re.compile(r"\s*([\w-]+)\s*=\s*((?:[.\d_]+\s*)?[^\W\d][\w.µ-]*)\s*(?:#.*)?$")
 CLOCK_HZ_MIN = 1000  # below that it is in another unit
+
+
+def toml_error(text: str, error: Exception) -> str:
+    """What is wrong with a text that is not TOML, in a line; a word without quotes is named."""
+    told = str(error).splitlines()[0]
+    if place := LINE.search(told):
+        line = text.splitlines()[int(place[1]) - 1]
+        if bare := UNQUOTED.match(line):
+            return f'{told}: {bare[1]} = "{bare[2]}" needs quotes'
+    return told
 
 
 def check_known(table: Table, keys: tuple[str, ...]) -> None:

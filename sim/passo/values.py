@@ -11,6 +11,7 @@ from passo.move_forms import DECIMALS_MAX, NUMBER_MAX
 
 # Powers of ten of a second; a time may also be in clocks.
 UNITS = {"clocks": 0, "ns": -9, "us": -6, "ms": -3, "s": 0}
+MICRO = str.maketrans("\N{MICRO SIGN}\N{GREEK SMALL LETTER MU}", "uu")
 NUMBER = re.compile(r"[+-]?(\d(_?\d)*\.?(\d(_?\d)*)?|\.\d(_?\d)*)([eE][+-]?0*\d{1,5})?", re.ASCII)
 
 
@@ -59,9 +60,10 @@ def check_number(key: str, value: int | Decimal, largest: int) -> Fraction:
 
 
 def parse_time(key: str, text: str, clock_hz: int | None = None) -> Fraction:
-    """Seconds of a text such as `400ms`; the unit `clocks` needs a clock."""
-    unit = next((unit for unit in UNITS if text.endswith(unit) and len(text) > len(unit)), "")
-    number = text.removesuffix(unit)
+    """Seconds of a text such as `400ms`, `400 ms` or `4µs`; the unit `clocks` needs a clock."""
+    plain = text.strip().translate(MICRO)
+    unit = next((unit for unit in UNITS if plain.endswith(unit) and len(plain) > len(unit)), "")
+    number = plain.removesuffix(unit).rstrip() if unit else text
     if not NUMBER.fullmatch(number) or (unit == "clocks" and clock_hz is None):
         raise BadValueError(f'{key} must be a number or a text such as "400ms", not {shown(text)}')
     mantissa, _, power = number.replace("_", "").lower().partition("e")

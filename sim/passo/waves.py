@@ -3,7 +3,7 @@
 
 import os
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
@@ -11,7 +11,7 @@ from pathlib import Path
 
 from passo.build import Parameters
 from passo.engine import Engine
-from passo.moves import Channels
+from passo.failure import BadInputError
 from passo.output import complete, write_text
 from passo.pair_engine import PairEngine
 from passo.registers import CHANNEL_STATE_CAUSE_BITS, Cause, DescribedEnum, State, Verdict
@@ -38,6 +38,30 @@ class Window:
         """The same in clocks, at least one."""
         begin, end = (round(time * clock_hz) for time in (self.begin, self.end))
         return begin, max(end, begin + 1)
+
+
+def wanted_window(waves: str | None, engine: str) -> Window | None:
+    """The window that `--waves` asks for, if it does; raises BadInputError."""
+    if waves is None:
+        return None
+    if engine == "model":
+        raise BadInputError("--waves needs the RTL: --engine both or rtl")
+    try:
+        return read_window(waves)
+    except ValueError as error:
+        raise BadInputError(f"--waves: {error}") from None
+
+
+def check_window(window: Window, clock_hz: int, clocks: int) -> None:
+    """Raises BadInputError if it is behind the end of a motion."""
+    if window.clocks(clock_hz)[0] >= clocks:
+        raise BadInputError(f"--waves: the motion takes only {clocks / clock_hz:.6g} s")
+
+
+def say_waves(folder: Path) -> None:
+    """Say how to open them."""
+    fst, view = (folder / name for name in FILES[:2])
+    print(f"waves, {fst.stat().st_size / 1e6:.1f} MB; open: gtkwave {view}   or: surfer {fst}")
 
 
 def read_window(text: str) -> Window:
@@ -68,9 +92,13 @@ def recorded(engine: Engine | PairEngine, window: Window, folder: Path) -> Itera
             shutil.copyfileobj(memory, file)
 
 
-def write_view(folder: Path, parameters: Parameters, file: Channels, start: int) -> None:
-    """Write the save file for GTKWave and its names; `start` is the clock at which the motion started."""
-    clock_hz = file.clock_hz
+def write_view(
+    folder: Path, parameters: Parameters, clock_hz: int, axes: Mapping[int, int], start: int
+) -> None:
+    """Write the save file for GTKWave and its names; `start` is the clock at which the motion started.
+
+    `axes`: of each channel that moves, by its number.
+    """
     for name, values in NAMED.items():
         lines = (f"{value:x} {value.name}" for value in values)
         write_text(folder / f"waves_{name}.txt", "\n".join([*lines, ""]))
@@ -79,10 +107,10 @@ def write_view(folder: Path, parameters: Parameters, file: Channels, start: int)
     files = zip(("dumpfile", "savefile"), FILES, strict=False)
     head = [f'[{kind}] "{folder.resolve() / name}"' for kind, name in files]
     head += [f"[timestart] {max(0, edge_ps - MARGIN_PS)}", f"*{zoom} {edge_ps}" + " -1" * 26]
-    write_text(folder / FILES[1], "\n".join([*head, *_traces(folder, parameters, file), ""]))
+    write_text(folder / FILES[1], "\n".join([*head, *_traces(folder, parameters, axes), ""]))
 
 
-def _traces(folder: Path, parameters: Parameters, file: Channels) -> Iterator[str]:
+def _traces(folder: Path, parameters: Parameters, axes: Mapping[int, int]) -> Iterator[str]:
     lines, ramps = parameters.line_queue_log2, parameters.ramp_queue_log2
     running, pins = parameters.channels, parameters.channels * parameters.axes
 
@@ -94,9 +122,8 @@ def _traces(folder: Path, parameters: Parameters, file: Channels) -> Iterator[st
 
     top = [f"TOP.{name}" for name in ("clk", "spi_cs_n", "spi_sclk", "spi_mosi", "spi_miso")]
     yield from group("host", f"@{BITS}", *top, *names(f"{CORE}.u_link.verdict[3:0]", "verdict"))
-    for moves in file.files:
-        number = moves.channel
-        title = f"channel {number}: " if file.several else ""
+    for number, count in axes.items():
+        title = f"channel {number}: " if set(axes) != {0} else ""
         channel = f"{CORE}.g_channel[{number}].u_channel"
         bit = "" if running == 1 else f"({running - 1 - number})"
         moving = f"{bit}TOP.running[{running - 1}:0]"
@@ -109,7 +136,7 @@ def _traces(folder: Path, parameters: Parameters, file: Channels) -> Iterator[st
         curve = [f"@{CURVE}", f"{channel}.velocity[31:0]", "@20000", "-", "-", "-"]
         substep = [f"@{BITS}", f"{channel}.substep"]
         yield from group(f"{title}velocity (2^-32 substeps per clock)", *curve, *substep)
-        for axis in range(moves.axes):
+        for axis in range(count):
             own = f"{channel}.u_axes.g_axis[{axis}]"
             place = pins - 1 - (number * parameters.axes + axis)
             bits = [f"({place})TOP.{name}[{pins - 1}:0]" for name in ("step", "dir", "enable")]

@@ -56,10 +56,16 @@ def needs_expanding(text: bytes) -> bool:
 
 
 def expand_file(
-    path: Path, options: Options, say: Callable[[str], None] = lambda text: None
+    path: Path,
+    options: Options,
+    say: Callable[[str], None] = lambda text: None,
+    data: bytes | None = None,
 ) -> list[PlainLine]:
-    """The plain lines of a program; `say` gets the texts of PRINT. Raises BadInputError."""
-    return _Run(path, options, say).run()
+    """The plain lines of a program; `say` gets the texts of PRINT; `data`: what the file has, if it is read.
+
+    Raises BadInputError.
+    """
+    return _Run(path, options, say, data).run()
 
 
 class _Left(Exception):  # noqa: N818 - not an error
@@ -83,12 +89,12 @@ class _Ended(Exception):  # noqa: N818
 class _Run:
     """One run of a program."""
 
-    def __init__(self, path: Path, options: Options, say: Callable[[str], None]):
+    def __init__(self, path: Path, options: Options, say: Callable[[str], None], data: bytes | None):
         self.options, self.say, self.folder = options, say, path.parent
         self.machine = Machine(options.gcode, options.tools, options.at_zero)
         self.parameters = ProgramParameters(self.machine)
         self.output = Output(self.machine)
-        self.program = _read(path)
+        self.program = _read(path) if data is None else read_program(path, _lines(data))
         self.files: dict[str, Program] = {}
         self.count, self.repeating = 0, 0
 

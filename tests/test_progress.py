@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: MIT
+"""Progress without a terminal, and what Ctrl-C leaves."""
+
+import json
+import os
+import signal
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from passo import cli, console
+from passo.campaign import Campaign, carry_out
+from passo.campaign_cluster import local_cluster
+from passo.engine import Engine
+
+
+class Clock:
+    """Seconds that a test sets."""
+
+    def __init__(self) -> None:
+        self.now = 100.0
+
+    def monotonic(self) -> float:
+        return self.now
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    made = Clock()
+    monkeypatch.setattr(console, "time", made)
+    return made
+
+
+def test_a_line_every_ten_seconds(clock: Clock, capsys: pytest.CaptureFixture[str]) -> None:
+    """On standard error; none of a work that is done, or that is short."""
+    with console.progress("part.nc", 1000) as report:
+        for second in range(1, 41):
+            clock.now = 100 + second
+            report(25 * second)
+    said = capsys.readouterr()
+    assert said.out == ""
+    lines = ["25%, 0:30 left", "50%, 0:20 left", "75%, 0:10 left"]
+    assert said.err.splitlines() == [f"part.nc: {line}" for line in lines]
+
+
+@pytest.mark.parametrize(("total", "left"), [(None, ""), (4.0, ", 2:50 left")])
+def test_simulated_seconds(
+    clock: Clock, capsys: pytest.CaptureFixture[str], total: float | None, left: str
+) -> None:
+    """With an estimate if their total is known."""
+    with console.passing("run", total) as report:
+        clock.now += 9
+        report(0.1)
+        clock.now += 1
+        report(0.222222)
+    assert capsys.readouterr().err == f"run: 0.222 s simulated{left}\n"
+
+
+def test_an_estimate_before_anything_is_done(clock: Clock) -> None:
+    estimate = console.Estimate(10)
+    clock.now += 600
+    assert estimate.left(0) == "" and estimate.left(5) == "10:00 left" and estimate.left(10) == "0:00 left"
+
+
+def interrupt_after(calls: int, function: Callable[..., Any]) -> Callable[..., Any]:
+    """A function that is interrupted, once."""
+    left = [calls]
+
+    def call(*arguments: Any, **named: Any) -> Any:
+        left[0] -= 1
+        if left[0] == -1:
+            raise KeyboardInterrupt
+        return function(*arguments, **named)
+
+    return call
+
+
+def test_a_run_of_moves_that_is_interrupted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The pulses up to then are written, and the status is that of an interrupt."""
+    path, out = tmp_path / "moves.toml", tmp_path / "out"
+    path.write_text(
+        'clock_hz = 16_000_000\n[[move]]\nsteps = [90000]\nprofile = "linear"\n'
+        "total_time = 3\nramp_time = 1\n[[move]]\nsteps = [900]\ntotal_time = 1\n"
+        'ramp_time = 0.1\nprofile = "linear"\n'
+    )
+    monkeypatch.setattr(Engine, "run", interrupt_after(12, Engine.run))
+    words = ["run", str(path), "--engine", "model", "--out", str(out), "--plot", "--report"]
+    assert cli.main(words) == cli.INTERRUPTED
+    assert "canceled after" in capsys.readouterr().err
+    summary = json.loads((out / "summary.json").read_text())
+    assert not summary["ok"] and summary["problems"][0].startswith("canceled after")
+    rows = np.loadtxt(out / "pulses.csv", int, delimiter=",", skiprows=1, ndmin=2)
+    assert 0 < len(rows) < 90900
+    assert (out / "motion.png").exists() and (out / "report.html").exists()
+
+
+def test_a_campaign_that_is_interrupted() -> None:
+    """Its result has the moves played by then; workers leave interrupts to the process that waits."""
+    with local_cluster(1) as client:
+        tell = interrupt_after(1, lambda _: None)
+        result = carry_out(Campaign(100, 1), client, tell)
+        assert result.canceled and 0 < result.moves < 100
+        (handler,) = client.run(_interrupt).values()
+        assert handler == signal.SIG_IGN
+
+
+def _interrupt() -> int:
+    """Of a worker, after an interrupt: who takes it."""
+    os.kill(os.getpid(), signal.SIGINT)
+    return int(signal.getsignal(signal.SIGINT))
