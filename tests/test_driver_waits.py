@@ -107,7 +107,7 @@ def test_a_wait_for_a_trigger_that_stops(action: TriggerAction) -> None:
 
 
 def test_a_wait_for_a_trigger_ends_with_another_stop() -> None:
-    """A limit on the way is told."""
+    """A limit on the way is reported."""
     driver = driver_of(machine_of(Switch("limit_high", 0, 500, above=True)), limit_soft=False)
     waiting(driver)
     driver.call("arm_trigger", struct("trigger_config", source=TriggerSource.PROBE))
@@ -303,11 +303,29 @@ def test_a_target_too_near_is_left_soon(wire: Wire, nearer: int) -> None:
     assert driver.positions()[1] == here + nearer
 
 
+def test_a_target_too_near_after_one_behind(wire: Wire) -> None:
+    """It slows down as the last call says, though it is coming to rest already."""
+    driver = open_driver(wire)
+    driver.call("configure_motion", 50 * MS, 50 * MS, 0)
+    driver.call("goto", go(30_000, 20_000))
+    run_goto(driver, 300)
+    driver.call("goto", go(wire.counted()[1][1] - 1000, 20_000))
+    here = wire.counted()[1][1]
+    driver.call("goto", go(here + 20, 20_000, acceleration=2_000_000 * Q32))
+    farthest = here
+    while driver.is_moving:
+        driver.poll()
+        wire.run(MS)
+        farthest = max(farthest, wire.counted()[1][1])
+    assert farthest - here < 20_000**2 / (2 * 2_000_000) + 20_000 * 0.005
+    assert driver.positions()[1] == here + 20
+
+
 # ---------------------------------------------------------------------------------------- other motions ----
 
 
 def test_a_stream_after_a_thread_has_the_cores_clock() -> None:
-    """The spindle stands still."""
+    """The spindle is at rest."""
     driver = open_driver(Wire(PARAMETERS))
     driver.call("configure_motion", 2 * MS, 2 * MS, 0)
     thread = {"encoder": 2, "counts": 1000, "top_speed": 10_000 * Q32, "steps": [500]}
