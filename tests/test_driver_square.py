@@ -8,7 +8,7 @@ import pytest
 from passo.random_cases import seed
 
 from benchmarks.squaring import CLOCK_HZ, Gantry, begin, gantry_of, problems, square
-from tests.helpers.driver_wire import error_of, struct
+from tests.helpers.driver_wire import by_speed, error_of, struct
 
 SKEWED = Gantry((900, 1200), (0, 10))
 
@@ -98,5 +98,29 @@ def test_what_no_gantry_has_is_refused(changes: dict[str, int], error: str) -> N
     driver, machine, (homes, kept) = begin(replace(SKEWED, offsets=(0, 6, 0)))
     for name, value in changes.items():
         setattr(homes[0], name, value)
+    assert error_of(driver, "home", homes, 1) == error and len(kept)
+    machine.engine.close()
+
+
+def test_as_often_as_one_likes() -> None:
+    """What a cycle has known or tried is forgotten by the next one."""
+    driver, machine, (homes, kept) = begin(SKEWED)
+    for _ in range(10):
+        driver.call("home", homes, 1)
+        while driver.is_moving:
+            driver.call("poll")
+            machine.run(CLOCK_HZ // 2000)
+        assert driver.fault == "OK" and driver.positions()[:2] == [SKEWED.pull_off] * 2
+        driver.call("move_by_speed", by_speed([40, 90], speed=2000))
+        driver.wait(1)
+    machine.engine.close()
+    assert len(kept)
+
+
+@pytest.mark.parametrize(("racking", "error"), [((1 << 28) - 1, "OK"), (1 << 28, "ARGUMENT")])
+def test_the_greatest_bound(racking: int, error: str) -> None:
+    """A quarter of a line."""
+    driver, machine, (homes, kept) = begin(SKEWED)
+    homes[0].racking = racking
     assert error_of(driver, "home", homes, 1) == error and len(kept)
     machine.engine.close()

@@ -29,3 +29,12 @@ def test_a_ramp_of_a_few_clocks(c: Any, clocks: int) -> None:
     check_plan(plan, (1000,))
     assert plan.c.accelerate_ticks == plan.c.decelerate_ticks == -(-clocks // 128)
     assert refused(c, make_move, Machine(), "by_speed", {**fields, "ramp_clocks": 0}) == "NO_ACCELERATION"
+
+
+@pytest.mark.parametrize("clocks", [128, 191, 192, 12_800 + 63, 12_800 + 64, 12_927])
+def test_a_time_is_that_of_the_nearest_tick(c: Any, clocks: int) -> None:
+    """Of 128 clocks; half a tick more is the next one."""
+    fields = {"steps": (1,), "profile": LINEAR, "total_clocks": clocks, "ramp_clocks": 0}
+    plan = make_move(c, Machine(), "in_time", fields)
+    ticks = sum(plan.c.ramps[n].ticks for n in range(plan.c.ramp_count))
+    assert ticks == (clocks + 64) // 128

@@ -171,3 +171,12 @@ def test_random_moves(c: Any) -> None:
 )
 def test_refusals(c: Any, changes: dict, name: str) -> None:
     assert refused(c, lambda c: jerk(c, Machine(), **changes)) == name
+
+
+@pytest.mark.parametrize("ends", [("start_speed",), ("stop_speed",), ("start_speed", "stop_speed")])
+def test_a_move_that_is_fast_already(c: Any, ends: tuple[str, ...]) -> None:
+    """It begins or ends at its speed, and has it all the way between: only the other end has a ramp."""
+    plan = jerk(c, Machine(), **{"start_speed": 0, "stop_speed": 0, **dict.fromkeys(ends, GOOD["speed"])})
+    assert float(speed_of(plan, plan.c.velocity_peak)) == pytest.approx(40_000, rel=1e-4)
+    assert (plan.c.accelerate_ticks == 0) == ("start_speed" in ends)
+    assert (plan.c.decelerate_ticks == 0) == ("stop_speed" in ends)

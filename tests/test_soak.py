@@ -3,6 +3,7 @@
 
 import shutil
 import subprocess
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -13,9 +14,11 @@ from passo.planted import plant
 from passo.toolchain import paths
 
 from tests.helpers import sanitized
-from verify.soak import defects, numbers, parts
+from verify.soak import defects, numbers, page, parts
+from verify.soak import program as soak_program
 from verify.soak.defects import Defect
-from verify.soak.program import FLAGS, FOLDERS, build, play_program
+from verify.soak.parts import Part
+from verify.soak.program import FLAGS, FOLDERS, Failure, build, play_kept, play_program
 from verify.soak.report import JUDGED, MACHINE_JUDGED
 
 SEED = random_cases.seed()
@@ -138,3 +141,33 @@ def test_a_core_that_differs_from_the_model_goes_red(program: Path, tmp_path: Pa
     plant(rtl / "passo_axis.v", "restart ? 16'd1 : 16'd2;", "16'd1;")
     monkeypatch.setattr(paths, "rtl", rtl)
     assert parts.play_icarus(program, 1, 3, JOBS).failures
+
+
+def test_a_run_continues_where_the_last_one_ended(program: Path, tmp_path: Path, monkeypatch) -> None:
+    """What did not fail is not played again, by the same program alone."""
+    monkeypatch.setattr(soak_program, "BUILD", tmp_path)
+    command = [program, str(SEED), "0", "3"]
+    first = play_kept(command, "model", SEED)
+    monkeypatch.setattr(soak_program, "play_program", None)
+    assert play_kept(command, "model", SEED) == first and first[0]["histories"] == 3
+    with pytest.raises(TypeError):
+        play_kept([program, str(SEED), "0", "4"], "model", SEED)
+
+
+def test_the_page_has_what_was_played_in_full(tmp_path: Path, monkeypatch) -> None:
+    """A part that failed, or with too few histories, leaves its section as it is."""
+    kept = tmp_path / "soak.md"
+    monkeypatch.setattr(page, "PAGE", kept)
+    form = page.mark("core", "") + page.mark("driver", "old\n")
+    kept.write_text(form)
+    both = [
+        Part("endings", 1, Counter({"histories": 7, "jog:stop": 7})),
+        Part("sessions", 1, Counter({"histories": 3, "jog:death": 3})),
+    ]
+    wanted = {"endings": 7, "sessions": 3}
+    assert page.write({**wanted, "sessions": 4}, both, [], {}) == []
+    failed = Part("sessions", 1, both[1].counts, [Failure("sessions", 1, 2, 3, "lost")])
+    assert page.write(wanted, [both[0], failed], [], {}) == []
+    assert kept.read_text() == form
+    assert page.write(wanted, both, [], {}) == ["driver"]
+    assert "| jog | 7 | 3 |" in kept.read_text()

@@ -244,7 +244,6 @@ enum passo_error passo_driver_square_next(struct passo *passo, const struct pass
 	case PASSO_HOME_SLOW:
 		if (!report->fired)
 			return turn_back(passo, false);
-		passo->square.known = 0;
 		for (uint8_t i = 0; i < PASSO_AXES_MAX; i++)
 			passo->square.begin[i] = report->positions[i];
 		return keep_edge(passo, report);

@@ -23,12 +23,15 @@ TESTS = (
     "test_plan_jerk",
     *("test_plan_methods", "test_plan_shape", "test_plan_sigmoid", "test_plan_straight", "test_plan_turn"),
     *("test_plan_user", "test_path", "test_path_changes", "test_path_lines", "test_path_relations"),
+    *("test_path_search", "test_path_motors", "test_path_feed"),
+    *("test_path_reference", "test_path_reference_jerk"),
     *("test_gcode", "test_gcode_arcs", "test_gcode_cycles", "test_gcode_edges"),
-    *("test_gcode_jog", "test_gcode_words"),
+    *("test_gcode_jog", "test_gcode_tools", "test_gcode_words", "test_motors"),
     *("test_driver", "test_driver_after", "test_driver_dma", "test_driver_edges", "test_driver_encoder"),
     *("test_driver_home", "test_driver_inputs", "test_driver_outputs", "test_driver_positions"),
     *("test_driver_together", "test_driver_units", "test_driver_goto", "test_driver_homed"),
-    *("test_driver_sessions", "test_driver_noise", "test_endings"),
+    *("test_driver_sessions", "test_driver_noise", "test_driver_square", "test_driver_frames"),
+    *("test_driver_waits", "test_endings"),
 )
 MOST_FAIL = 2  # tests of a file that do not run on copies
 LONGEST = 20.0  # seconds of the processor: a test that takes longer is no judge here

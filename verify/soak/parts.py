@@ -16,7 +16,7 @@ from passo.console import console as terminal
 from passo.toolchain import paths
 from rich.console import Console
 
-from verify.soak.program import BUILD, HERE, KINDS, Failure, play_program, say
+from verify.soak.program import BUILD, HERE, KINDS, Failure, play_kept, play_program, say
 
 # Must match scenario_parameters() in scenario.c.
 SETS = (
@@ -87,7 +87,7 @@ def play_model(program: Path, seed: int, histories: int, jobs: int, name: str = 
 
     def task(first: int, count: int) -> Work:
         command = [program, str(seed), str(first), str(count), "--keep-on", *kind]
-        return lambda: play_program(command, name, seed)
+        return lambda: play_kept(command, name, seed)
 
     return _all(Part(name), histories, (task(*chunk) for chunk in chunks(histories)), jobs)
 
@@ -96,10 +96,11 @@ def play_driver(program: Path, seed: int, histories: int, jobs: int, library: Pa
     """Histories through the driver over a bad link, on the C model or also on a Verilated core."""
     name = "driver on verilator" if library else "driver"
     more = ["--rtl", library] if library else []
+    play = play_program if library else play_kept
 
     def task(first: int, count: int) -> Work:
         command = [program, str(seed), str(first), str(count), "--driver", "--keep-on", *more]
-        return lambda: play_program(command, name, seed)
+        return lambda: play(command, name, seed)
 
     return _all(Part(name), histories, (task(*chunk) for chunk in chunks(histories)), jobs)
 
@@ -109,7 +110,7 @@ def play_endings(program: Path, kind: str, seed: int, histories: int, jobs: int)
 
     def task(first: int, count: int) -> Work:
         command = [program, kind, str(seed), str(first), str(count)]
-        return lambda: play_program(command, kind, seed)
+        return lambda: play_kept(command, kind, seed)
 
     return _all(Part(kind), histories, (task(*chunk) for chunk in chunks(histories)), jobs)
 

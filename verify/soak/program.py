@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The program that plays histories: build it, run it, and parse its output."""
 
+import json
 import os
 import subprocess
 from collections import Counter
@@ -10,7 +11,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from passo.build import model_library, planner_library
+from passo.cache import hash_of
 from passo.compiler import STRICT, compile_to, headers, includes, kept, sources
+from passo.output import write_json
 from passo.toolchain import environment, paths
 
 HERE = Path(__file__).resolve().parent
@@ -84,6 +87,23 @@ def build_endings(root: Path = paths.root, program: Path = BUILD / "endings") ->
     linked = [*map(str, libraries), *(f"-Wl,-rpath,{library.parent}" for library in libraries)]
     inputs = [*files, *libraries, *headers(*known)]
     return kept(program, inputs, FLAGS, *includes(*known), *files, *linked, "-lm")
+
+
+def play_kept(command: Sequence[str | Path], part: str, seed: int) -> tuple[Counter[str], list[Failure]]:
+    """The same as play_program(); what did not fail is kept, so a run continues where the last one ended.
+
+    The name of a program that loads libraries has their hash.
+    """
+    program, *arguments = command
+    key = hash_of([Path(program)], [Path(program).name, *map(str, arguments)])
+    kept_counts = BUILD / "played" / f"{part}-{key}.json"
+    if kept_counts.exists():
+        return Counter(json.loads(kept_counts.read_text())), []
+    counts, failures = play_program(command, part, seed)
+    if not failures:
+        kept_counts.parent.mkdir(parents=True, exist_ok=True)
+        write_json(counts, kept_counts)
+    return counts, failures
 
 
 playing: set[subprocess.Popen] = set()  # killed when this program ends

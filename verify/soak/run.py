@@ -22,6 +22,7 @@ from passo.toolchain import paths
 
 from verify.soak.defects import catch_all
 from verify.soak.numbers import measure
+from verify.soak.page import write
 from verify.soak.parts import (
     DRIVER_SET,
     SETS,
@@ -38,18 +39,18 @@ from verify.soak.report import report, show, show_machine
 
 REPORT = paths.build / "soak.json"
 
-# Number of histories of each part.
+# Number of histories of each part; 20,000 have filters of milliseconds: `starts`, `endings`, `sessions`.
 HISTORIES = {
     "model": 20_000,
     "driver": 3_000,
-    "endings": 6_000,
+    "endings": 7_500,
     "sessions": 2_500,
     "verilator": 1_500,
     "driver on verilator": 150,
     "icarus": 1_000,
     "machine": 4_000,
     "tries": 15_000,
-    "starts": 2_000,
+    "starts": 10_000,
     "pokes": 60,
     "machine on verilator": 170,
     "machine on icarus": 170,
@@ -85,6 +86,9 @@ def soak(seed: int, only: Sequence[str], scale: float, jobs: int) -> bool:
     caught = catch_all(seed, jobs) if "defects" in only else []
     made = report(seed, [*parts, *machine], caught, numbers)
     write_json(made, REPORT)
+    if seed == 1:
+        written = write(HISTORIES, [*parts, *machine], caught, numbers)
+        console.print(f"In docs/reference/soak.md: {', '.join(written) or 'nothing new'}")
     show([*parts, *machine], caught)
     if machine:
         show_machine(machine, numbers)

@@ -199,6 +199,19 @@ void bench_configure(struct bench *bench, uint64_t hold_clocks, uint64_t stop_cl
 	bench_must(bench, "motion", passo_configure_motion(passo, hold_clocks, stop_clocks, 0));
 }
 
+void bench_filter(struct bench *bench)
+{
+	static const uint32_t filters[] = {0, 20u * MICROSECOND, MILLISECOND, 4u * MILLISECOND, 65535};
+
+	bench->filter = filters[bench_draw(bench, 5)];
+	bench_must(bench, "filter", passo_configure_filter(&bench->passo, bench->filter));
+}
+
+uint64_t bench_settling(const struct bench *bench)
+{
+	return 2u * bench->filter + MILLISECOND;
+}
+
 enum passo_error bench_finish(struct bench *bench, uint64_t clocks_between)
 {
 	const uint64_t end = bench_clock(bench) + (uint64_t)PATIENCE_S * CLOCK_HZ;

@@ -36,6 +36,7 @@ struct bench {
 	jmp_buf death;
 	uint64_t spindle_period, spindle_next; /* clocks from count to count, 0: at rest */
 	unsigned spindle;                      /* counts so far */
+	uint64_t filter;                       /* of the inputs, clocks */
 	unsigned compares;                     /* pulses of the compare pin */
 	uint64_t powered;                      /* clock of the last rise of a power pin */
 	const char *fault;                     /* what is wrong, or null */
@@ -58,7 +59,12 @@ enum passo_error bench_open(struct bench *bench);
 /* Sets pins, times, switches and encoders of the machine, enables the drives. */
 void bench_configure(struct bench *bench, uint64_t hold_clocks, uint64_t stop_clocks);
 
+/* Draws a filter of the inputs, up to the longest one, and sets it. */
+void bench_filter(struct bench *bench);
+
 void bench_run(struct bench *bench, uint64_t clocks);
+/* The longest time until the core knows an input that has changed, and a millisecond. */
+uint64_t bench_settling(const struct bench *bench);
 /* Polls, once in a while, until nothing moves; the first error. */
 enum passo_error bench_finish(struct bench *bench, uint64_t clocks_between);
 /* The positions of the driver are those of the pins. */

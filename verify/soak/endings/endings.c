@@ -56,7 +56,9 @@ static void set_up(struct bench *bench, const struct scene *scene)
 	}
 	bench_must(bench, "probe", passo_configure_probe(passo, false));
 	bench_must(bench, "watchdog", passo_configure_watchdog(passo, WATCHDOG_CLOCKS, 0));
-	bench_run(bench, MILLISECOND);
+	if (scene->operation != OP_HOME) /* its switch is exact to the step */
+		bench_filter(bench);
+	bench_run(bench, bench_settling(bench));
 }
 
 /* A random one, often around where it slows down, and at its end. */
@@ -142,7 +144,8 @@ static void hold(struct bench *bench, struct scene *scene)
 	bench_must(bench, "hold", passo_hold(passo));
 	/* on its way down it may meet its switch, and stops from there */
 	pass(bench, scene,
-	    scene->hold_clocks + (is_task(scene->operation) ? scene->stop_clocks : 0u) + SETTLED);
+	    scene->hold_clocks + (is_task(scene->operation) ? scene->stop_clocks + bench->filter : 0u)
+	        + SETTLED);
 	const int32_t there = bench->axis[0].position;
 	pass(bench, scene, 10u * MILLISECOND);
 	if (bench->axis[0].position != there && scene->operation != OP_HOME)
@@ -336,7 +339,7 @@ static void release(struct bench *bench)
 	passo_engine_set(bench->engine, PASSO_INPUT_ALARM, 0);
 	passo_engine_set(bench->engine, PASSO_INPUT_ESTOP_N, 1);
 	bench->spindle_period = 0;
-	bench_run(bench, MILLISECOND);
+	bench_run(bench, bench_settling(bench));
 }
 
 static void clear(struct bench *bench, const struct scene *scene)
@@ -374,7 +377,8 @@ static bool may_override(const struct bench *bench, const struct scene *scene)
 	const struct pulses *pulses = &bench->axis[0];
 
 	return scene->ending == END_LIMIT && is_task(scene->operation) && pulses->count != 0u
-	    && scene->ended < pulses->clock[pulses->count - 1u] + scene->stop_clocks + SETTLED;
+	    && scene->ended
+	           < pulses->clock[pulses->count - 1u] + scene->stop_clocks + bench->filter + SETTLED;
 }
 
 /* The motion was over before it was stopped. */
@@ -455,7 +459,7 @@ static void play(struct bench *bench, struct scene *scene)
 	set_up(bench, scene);
 	operation_draw(bench, scene);
 	arm_trigger(bench, scene);
-	bench_run(bench, MILLISECOND);
+	bench_run(bench, bench_settling(bench));
 	for (unsigned a = 0; a < AXES; a++) {
 		bench->passo.axis[a].homed = true;
 		pulses_begin(&bench->axis[a]);

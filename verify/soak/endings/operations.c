@@ -221,10 +221,15 @@ static void mount(struct bench *bench, const struct scene *scene, enum passo_inp
 		abort();
 }
 
-/* A task may stop softly behind the switch. */
-static void bound_task(struct scene *scene)
+static int32_t steps_in(const struct scene *scene, uint64_t clocks)
 {
-	const int32_t past = (int32_t)(scene->speed * (double)scene->stop_clocks / CLOCK_HZ) + 60;
+	return (int32_t)(scene->speed * (double)clocks / CLOCK_HZ);
+}
+
+/* A task may stop softly behind the switch, which the filter shows later. */
+static void bound_task(const struct bench *bench, struct scene *scene)
+{
+	const int32_t past = steps_in(scene, scene->stop_clocks + bench->filter) + 60;
 
 	bound(scene);
 	scene->low[0] -= past;
@@ -237,7 +242,7 @@ static enum passo_error begin_home(struct bench *bench, struct scene *scene)
 	const int32_t way = scene->target[0] - scene->start[0];
 
 	mount(bench, scene, PASSO_INPUT_HOME);
-	bound_task(scene);
+	bound_task(bench, scene);
 	at.home = (struct passo_home){.source = PASSO_TRIGGER_SOURCE_HOME,
 	    .distance = 2 * way,
 	    .back_off = 20,
@@ -253,8 +258,9 @@ static enum passo_error begin_probe(struct bench *bench, struct scene *scene)
 	struct passo_probe probe = {.speed = Q32(scene->speed), .acceleration = Q32(scene->acceleration)};
 
 	mount(bench, scene, PASSO_INPUT_PROBE);
-	bound_task(scene);
-	probe.steps[0] = 2 * (scene->target[0] - scene->start[0]);
+	bound_task(bench, scene);
+	const int32_t way = scene->target[0] - scene->start[0], late = steps_in(scene, bench->filter);
+	probe.steps[0] = 2 * (way + (way < 0 ? -late : late));
 	return passo_probe(&bench->passo, &probe);
 }
 

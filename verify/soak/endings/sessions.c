@@ -53,6 +53,7 @@ static void live(struct bench *bench, struct scene *scene)
 		    passo_configure_inputs(
 			&bench->passo, a, &(struct passo_input_config){.home = true, .limit_low = true}));
 	bench_must(bench, "probe", passo_configure_probe(&bench->passo, false));
+	bench_filter(bench);
 	operation_draw(bench, scene);
 	for (unsigned a = 0; a < AXES; a++)
 		pulses_begin(&bench->axis[a]);
@@ -98,7 +99,7 @@ static void provoke(struct bench *bench, bool on)
 	passo_engine_set(bench->engine, PASSO_INPUT_HOME, levels);
 	passo_engine_set(bench->engine, PASSO_INPUT_SYNC, on ? 1u : 0u);
 	passo_engine_set(bench->engine, PASSO_INPUT_ENCODER_INDEX, levels);
-	bench_run(bench, MILLISECOND / 4u);
+	bench_run(bench, MILLISECOND / 4u + bench_draw(bench, 2) * 2u * (uint32_t)bench->filter);
 }
 
 static void expect_rest(struct bench *bench)
