@@ -23,6 +23,7 @@ struct choice {
 	struct passo_path_law law;    /* of the ramps up to there and down again */
 	struct passo_path_law behind; /* without the first line */
 	uint64_t level, length, end;
+	uint64_t lacks; /* of the length to come down without a level part */
 	bool found, rest;
 	/* what further lines may change */
 	bool top_settled, settled;
@@ -45,6 +46,7 @@ static void consider(const struct passo_path_planner *path, const struct reach *
 	const uint64_t from = path->velocity;
 	const uint64_t down = from > end ? passo_path_ramp_length(path, &reach->law, from, end) : 0;
 	const uint64_t level = down < reach->length ? reach->length - down : 0;
+	const uint64_t lacks = down < reach->length ? 0 : down - reach->length;
 	const uint64_t better = choice->top + (choice->top >> PRECISION) + 1;
 
 	if (better <= reach->lowest
@@ -54,10 +56,11 @@ static void consider(const struct passo_path_planner *path, const struct reach *
 		choice->law = reach->law;
 		choice->behind = reach->behind;
 	}
-	if (choice->found && level <= choice->level)
+	if (choice->found && (level > 0 ? level <= choice->level : lacks >= choice->lacks))
 		return;
 	choice->found = true;
 	choice->level = level;
+	choice->lacks = lacks;
 	choice->length = reach->length;
 	choice->end = end;
 	choice->rest = rest;
@@ -76,8 +79,10 @@ static void pass(const struct passo_path_planner *path, uint32_t index, struct r
 	if (index == path->planned)
 		reach->length -= (uint64_t)path->offset;
 	/* what a ramp of whole ticks has left of the first line has no say: the next one begins gently */
-	if (index > path->planned || passo_path_ticks_over(path, reach->length, 2 * from) >= TICKS_MIN / 8)
-		narrow(&reach->law, item->slope, item->jerk);
+	if (index == path->planned && passo_path_ticks_over(path, reach->length, 2 * from) < TICKS_MIN / 8
+	    && !passo_path_rests_after(path, index))
+		item = passo_path_item(path, index + 1);
+	narrow(&reach->law, item->slope, item->jerk);
 	if (index > path->planned)
 		narrow(&reach->behind, item->slope, item->jerk);
 	if (!passo_path_is_settled(path, index) && reach->open == 0)
