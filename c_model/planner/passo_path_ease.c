@@ -164,7 +164,7 @@ static bool turns_back(const struct passo_path_planner *path, const int32_t *uni
 }
 
 /* Highest square where a curve of several lines passes into one to the other side, in the middle of the last
- * line. The acceleration changes at once by `k v^2`, `k` the change of the curvature. Steps that are off by
+ * line. The acceleration jumps by `k v^2`, `k` the change of the curvature. Steps that are off by
  * `e` show a jerk of `0.75 k v^2 / w - 8 e / w^3` over a time w, so `k v^3 sqrt(k / e) / 11` at most; `e` is
  * that of chords, and of lines that are merged. Half of the jerk is for the ramps in the curves. */
 static uint64_t square_between(const struct passo_path_planner *path, const struct passo_path_corner *corner,
