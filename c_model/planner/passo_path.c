@@ -133,14 +133,14 @@ void passo_path_tolerance(struct passo_path_planner *path, uint64_t tolerance)
 
 void passo_path_dwell(struct passo_path_planner *path, uint64_t clocks)
 {
+	path->rest = true;
+	/* with profile jerk the newest line is more now that it is straight to its end */
+	path->open = path->open || passo_path_is_soft(path);
 	passo_path_close(path);
 	const uint32_t round = (UINT32_C(1) << path->machine.tick_log2) - 1u;
 	const uint64_t ticks = path->dwell + ((clocks >> path->machine.tick_log2) + ((clocks & round) > 0));
 
 	path->dwell = (uint32_t)passo_path_smaller(ticks, UINT32_MAX);
-	path->rest = true;
-	if (passo_path_is_soft(path))
-		passo_path_look_back(path); /* the newest line is straight to its end */
 	path->waits = false;
 	path->final = path->added;
 }

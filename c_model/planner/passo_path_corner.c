@@ -133,7 +133,7 @@ uint64_t passo_path_limit_corner(
 	}
 	if (corner.turn < 4) {
 		item->arc = PASSO_PATH_ARC_BEFORE | PASSO_PATH_ARC_BEHIND;
-		passo_path_keep_turn(path, 0, 0, unit);
+		passo_path_begin_straight(path);
 		bend_lines(path, unit, length, &corner.rounding, item);
 		return PASSO_PATH_SQUARE_MAX;
 	}
@@ -147,12 +147,8 @@ uint64_t passo_path_limit_corner(
 	if (both < arc)
 		item->arc = (corner.bends_before ? PASSO_PATH_ARC_BEFORE : 0)
 		          | (corner.bends_behind ? PASSO_PATH_ARC_BEHIND : 0);
-	if (passo_path_shape(path) != PASSO_SHAPE_LINEAR) {
-		const uint64_t shaped = passo_path_shaped_corner(path, &corner, unit, item);
-		passo_path_keep_turn(
-		    path, passo_isqrt64(corner.turn), corner.bends_behind ? corner.over : 0, unit);
-		return shaped;
-	}
+	if (passo_path_shape(path) != PASSO_SHAPE_LINEAR)
+		return passo_path_shaped_corner(path, &corner, unit, item);
 	const uint64_t square = passo_path_corner_square(path, &corner, NULL);
 #ifndef PASSO_WITHOUT_ROUNDING
 	if (passo_path_is_rounded(path))

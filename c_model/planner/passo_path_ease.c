@@ -179,13 +179,15 @@ static uint64_t square_between(const struct passo_path_planner *path, const stru
 	return soft_square(radius * passo_isqrt64(passo_path_smaller(off, UINT32_MAX) * radius), JUMP * jerk);
 }
 
-void passo_path_keep_turn(struct passo_path_planner *path, uint64_t turn, uint64_t over, const int32_t *unit)
+/* The curve of the new line, for the next corner. */
+static void keep_turn(struct passo_path_planner *path, const struct passo_path_corner *corner,
+    const int32_t *unit, uint64_t turn)
 {
 	struct passo_path_place *at = &path->at;
 
-	at->turns = over == 0 ? 0 : at->turns == 0 || turns_back(path, unit) ? 1 : at->turns + 1;
+	at->turns = !corner->bends_behind ? 0 : at->turns == 0 || turns_back(path, unit) ? 1 : at->turns + 1;
 	at->turn = turn;
-	at->over = over;
+	at->over = corner->over;
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
 		at->half_turn[axis] = half_turn(path, unit, axis);
 }
@@ -211,8 +213,8 @@ static uint8_t lacking_over(const struct passo_path_planner *path, const struct 
 }
 #endif
 
-uint64_t passo_path_shaped_corner(const struct passo_path_planner *path,
-    const struct passo_path_corner *corner, const int32_t *unit, struct passo_path_item *item)
+uint64_t passo_path_shaped_corner(struct passo_path_planner *path, const struct passo_path_corner *corner,
+    const int32_t *unit, struct passo_path_item *item)
 {
 	static const uint32_t JERK_PARTS[] = {JERK_EXCESS, 4, 2};
 	struct passo_path_item *last = passo_path_item(path, path->added - 1);
@@ -247,8 +249,11 @@ uint64_t passo_path_shaped_corner(const struct passo_path_planner *path,
 
 		item->over = lacking_over(path, corner, unit, item, passed);
 	}
-	if (soft)
-		return passo_path_smaller(square, square_between(path, corner, unit, turn, jerk));
+	if (soft) {
+		const uint64_t between = square_between(path, corner, unit, turn, jerk);
+		keep_turn(path, corner, unit, turn);
+		return passo_path_smaller(square, between);
+	}
 #endif
 	return square;
 }

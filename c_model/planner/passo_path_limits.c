@@ -205,7 +205,7 @@ enum passo_plan_error passo_path_measure(
 
 	limit_line(path, unit, move->feed, item);
 	if (path->rest)
-		passo_path_keep_turn(path, 0, 0, unit);
+		passo_path_begin_straight(path);
 	else
 		item->bend = passo_path_limit_corner(path, unit, length, item);
 	passo_path_keep_start(item, &path->at);

@@ -213,17 +213,15 @@ static inline void passo_path_restore_start(struct passo_path_item *item, const 
 #endif
 }
 
-/* The turn (Q1.30) from the last line to one with this unit vector; the new line is part of its curve, `over`
- * a length in UQ.30 substeps, or not, 0. */
-#ifdef PASSO_WITHOUT_JERK_PATHS
-static inline void passo_path_keep_turn(
-    struct passo_path_planner *path, uint64_t turn, uint64_t over, const int32_t *unit)
+/* The next line begins no part of a curve. */
+static inline void passo_path_begin_straight(struct passo_path_planner *path)
 {
-	(void)path, (void)turn, (void)over, (void)unit;
-}
+#ifdef PASSO_WITHOUT_JERK_PATHS
+	(void)path;
 #else
-void passo_path_keep_turn(struct passo_path_planner *path, uint64_t turn, uint64_t over, const int32_t *unit);
+	path->at.turns = 0;
 #endif
+}
 
 /* In how many parts the curve of an item is. */
 static inline unsigned passo_path_halves(const struct passo_path_item *item)
@@ -288,8 +286,8 @@ uint64_t passo_path_corner_square(
     const struct passo_path_planner *path, const struct passo_path_corner *corner, const uint64_t *left);
 
 /* The same where ramps are shaped; the curved lines beside it leave what the corner needs. */
-uint64_t passo_path_shaped_corner(const struct passo_path_planner *path,
-    const struct passo_path_corner *corner, const int32_t *unit, struct passo_path_item *item);
+uint64_t passo_path_shaped_corner(struct passo_path_planner *path, const struct passo_path_corner *corner,
+    const int32_t *unit, struct passo_path_item *item);
 
 /* Square at the corner between the last line and this one. The change of direction of an axis takes place
  * over a certain length: half the sum of the two lines, if they stand for an arc, or the arc that deviates by
