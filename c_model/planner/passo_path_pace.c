@@ -14,6 +14,11 @@
 /* Most lines that may follow a long one immediately. */
 #define BURST 16u
 
+/* By 2^-20 of its square a ramp may be above the profile, which is rounded; by this part it may be steeper.
+ */
+#define ROUNDED 20u
+#define STEEPER 64u
+
 /* The room for a frame is seen by one poll and used by the next, and a frame of lines may be under way then:
  * what is queued behind the room lasts for three polls. Of three frames two are for lines; one in four is
  * spare. Of ramps that are limited together the known lines hold twice as many. */
@@ -98,6 +103,7 @@ struct ahead {
 	uint64_t square; /* the lowest that is allowed */
 	uint64_t slope;  /* the lowest of the lines, whatever their curves */
 	uint64_t left;   /* the steepest that a ramp up, or down, over them may be */
+	uint64_t fall;   /* the least steep that a ramp down has to be, to be below all that it passes */
 	uint64_t rest;   /* length to the end of the line at which the path rests; 0: it does not */
 	uint64_t end;    /* the square there */
 	bool open;       /* further lines may raise it */
@@ -110,6 +116,7 @@ static struct ahead look_ahead(
     const struct passo_path_planner *path, uint64_t length, enum passo_path_need need, bool up)
 {
 	struct ahead ahead = {.square = PASSO_PATH_SQUARE_MAX, .slope = UINT64_MAX, .left = UINT64_MAX};
+	const uint64_t square = passo_path_square_of(path->velocity);
 	uint64_t passed = 0;
 
 	for (uint32_t index = path->planned;; index++) {
@@ -141,6 +148,9 @@ static struct ahead look_ahead(
 			break;
 		}
 		ahead.square = passo_path_smaller(ahead.square, end);
+		if (end + (end >> ROUNDED) < square)
+			ahead.fall = passo_path_larger(
+			    ahead.fall, passo_mul_div_ceil(square - end, PASSO_UNIT_Q32, passed));
 	}
 	return ahead;
 }
@@ -162,7 +172,8 @@ static bool is_below(const struct passo_path_planner *path, const struct passo_p
 		if (passed >= aim->length)
 			return true;
 		passing = from - passo_mul_div(from - aim->square, passed, aim->length);
-		if (passing > passo_path_end_square(path, index) || passo_path_rests_after(path, index))
+		if (passing - (passing >> ROUNDED) > passo_path_end_square(path, index)
+		    || passo_path_rests_after(path, index))
 			return false;
 	}
 }
@@ -182,9 +193,10 @@ static struct passo_path_aim aim_at(
 	return (struct passo_path_aim){kind, length, passo_path_square_of(velocity), slope, .plain = true};
 }
 
-/* A ramp of `ticks` ticks, after which the path could continue for `next`. Length 0: there is none. */
-static struct passo_path_aim calm(
-    const struct passo_path_planner *path, uint64_t ticks, uint64_t next, enum passo_path_need need)
+/* A ramp of `ticks` ticks, after which the path could continue for `next`; down no steeper than the curves
+ * leave at the present speed, or `steep`, than the lines. Length 0: there is none. */
+static struct passo_path_aim calm(const struct passo_path_planner *path, uint64_t ticks, uint64_t next,
+    bool steep, enum passo_path_need need)
 {
 	const uint64_t from = path->velocity, slope = passo_path_item(path, path->planned)->slope;
 	const uint64_t most = from + passo_path_change(path, slope, ticks);
@@ -200,7 +212,15 @@ static struct passo_path_aim calm(
 		return aim;
 	}
 	if (to < from) {
-		if (from - to > passo_path_change(path, ahead.slope, ticks) * 17 / 16)
+		const struct ahead passed =
+		    look_ahead(path, passo_path_length_in(path, 2 * from, ticks), need, false);
+		const uint64_t fall =
+		    passo_path_smaller(passo_path_change(path, passed.fall, ticks), from - 1) + 1;
+		const uint64_t most_down =
+		    steep ? ahead.slope + ahead.slope / 16 : passed.left + passed.left / STEEPER;
+
+		to = passo_path_smaller(to, from - fall);
+		if (from - to > passo_path_change(path, most_down, ticks))
 			return (struct passo_path_aim){.length = 0, .open = ahead.unknown};
 	} else {
 		ahead = look_ahead(path,
@@ -230,10 +250,10 @@ static struct passo_path_aim calm(
 }
 
 /* The same, if it stays below all that it passes. */
-static struct passo_path_aim calm_below(
-    const struct passo_path_planner *path, uint64_t ticks, enum passo_path_need need)
+static struct passo_path_aim calm_below(const struct passo_path_planner *path, uint64_t ticks, uint64_t next,
+    bool steep, enum passo_path_need need)
 {
-	struct passo_path_aim made = calm(path, ticks, passo_path_pace_need(path, ticks, 2), need);
+	struct passo_path_aim made = calm(path, ticks, next, steep, need);
 
 	if (made.length > 0 && made.kind == PASSO_PATH_DOWN && !is_below(path, &made))
 		made.length = 0;
@@ -284,15 +304,27 @@ struct passo_path_aim passo_path_at_pace(
 		if (!ahead.unknown && lowest(&ahead) >= aim->square)
 			return *aim;
 	}
-	/* long enough for a short one behind it, where the profile has long ones: it is followed then */
+	/* Long enough for a short one behind it, where the profile has long ones: it is followed then. Or
+	 * where the profile comes down for too long to stay at one speed behind this ramp. At last just down
+	 * with the profile, by ramps that are all long enough. */
 	const uint64_t share = path->pace / path->paced;
+	const uint64_t shorter = passo_path_larger(least, share) + 1;
+	const uint64_t longer = passo_path_larger(shorter, passo_path_pace_need(path, 0, 2) + 1);
 	const bool follows = aim->kind == PASSO_PATH_DOWN && ticks > share;
-	const uint64_t all = follows ? passo_path_pace_need(path, 0, 2) : 0;
-	struct passo_path_aim made =
-	    calm_below(path, passo_path_larger(least, passo_path_larger(all, share)) + 1, need);
+	const struct {
+		uint64_t ticks, next;
+	} tries[] = {
+	    {longer, passo_path_pace_need(path, longer, 2)},
+	    {shorter, passo_path_pace_need(path, shorter, 2)},
+	    {shorter, 0},
+	};
+	struct passo_path_aim made = {.length = 0};
 
-	if (made.length == 0 && !made.open)
-		made = calm_below(path, passo_path_larger(least, share) + 1, need);
+	for (unsigned i = 0; i < 6 && made.length == 0 && !made.open; i++) {
+		const unsigned one = i % 3 == 2 ? 2 : follows ? i % 3 : 1 - i % 3;
+
+		made = calm_below(path, tries[one].ticks, tries[one].next, i >= 3, need);
+	}
 	if (made.open && need == PASSO_PATH_NO_NEED) {
 		made.length = 0;
 		return made;
