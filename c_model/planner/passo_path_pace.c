@@ -304,26 +304,17 @@ struct passo_path_aim passo_path_at_pace(
 		if (!ahead.unknown && lowest(&ahead) >= aim->square)
 			return *aim;
 	}
-	/* Long enough for a short one behind it, where the profile has long ones: it is followed then. Or
-	 * where the profile comes down for too long to stay at one speed behind this ramp. At last just down
-	 * with the profile, by ramps that are all long enough. */
-	const uint64_t share = path->pace / path->paced;
-	const uint64_t shorter = passo_path_larger(least, share) + 1;
+	/* As long as the mean, and then on at its speed; or so long that any may follow; or with the mean
+	 * just down with the profile. */
+	const uint64_t shorter = passo_path_larger(least, path->pace / path->paced) + 1;
 	const uint64_t longer = passo_path_larger(shorter, passo_path_pace_need(path, 0, 2) + 1);
-	const bool follows = aim->kind == PASSO_PATH_DOWN && ticks > share;
-	const struct {
-		uint64_t ticks, next;
-	} tries[] = {
-	    {longer, passo_path_pace_need(path, longer, 2)},
-	    {shorter, passo_path_pace_need(path, shorter, 2)},
-	    {shorter, 0},
-	};
 	struct passo_path_aim made = {.length = 0};
 
 	for (unsigned i = 0; i < 6 && made.length == 0 && !made.open; i++) {
-		const unsigned one = i % 3 == 2 ? 2 : follows ? i % 3 : 1 - i % 3;
+		const uint64_t some = i % 3 == 1 ? longer : shorter;
+		const uint64_t next = i % 3 == 2 ? 0 : passo_path_pace_need(path, some, 2);
 
-		made = calm_below(path, tries[one].ticks, tries[one].next, i >= 3, need);
+		made = calm_below(path, some, next, i >= 3, need);
 	}
 	if (made.open && need == PASSO_PATH_NO_NEED) {
 		made.length = 0;
