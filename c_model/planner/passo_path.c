@@ -6,6 +6,8 @@
 
 #include "passo_path_private.h"
 
+/* Half the arc of a corner of a radian, by the junction deviation: sharper ones have less. */
+#define SHARP 4u
 /* A line that takes longer than this part of a second is not merged. */
 #define MERGED_PER_SECOND 128u
 
@@ -192,7 +194,11 @@ static uint64_t reach_of(const struct passo_path_planner *path, uint32_t index,
     const struct passo_path_item *item, const struct passo_path_item *next)
 {
 	const uint64_t end = end_square(item, next);
-	const uint64_t behind = passo_path_flat(path, index + 1, index, end, true);
+	uint64_t behind = passo_path_flat(path, index + 1, index, end, true);
+
+	/* at the end of the newest line a sharp corner may follow, whose arc leaves no slope */
+	if (next == NULL && !item->last && !path->rest && passo_path_shape(path) == PASSO_SHAPE_LINEAR)
+		behind = passo_path_smaller((uint64_t)item->substeps << 31, path->deviation * SHARP << 16);
 	/* its flat end is that of a square which it cannot exceed */
 	const uint64_t plain = reach_over(item, end, behind, behind);
 	const uint64_t before =
