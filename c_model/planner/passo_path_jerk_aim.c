@@ -160,7 +160,7 @@ static bool is_worth(const struct passo_path_planner *path, const struct choice 
 }
 
 /* A ramp up to the top, of a length; where the first line, a small part of it, makes it gentle, a ramp within
- * that line. */
+ * that line, or if that is too short, none before its end. */
 static struct passo_path_aim rise(
     const struct passo_path_planner *path, const struct choice *choice, uint32_t least, uint64_t up)
 {
@@ -174,9 +174,10 @@ static struct passo_path_aim rise(
 		return whole;
 	const uint64_t first = passo_path_highest(path, &law, from, 0, UINT64_MAX, left, top);
 	const uint64_t way = passo_path_ramp_length(path, &law, from, first);
-	return passo_path_ticks_over(path, way, from + first) >= least
-	         ? aim_at(path, PASSO_PATH_UP, way, first)
-	         : whole;
+	if (passo_path_ticks_over(path, way, from + first) >= least)
+		return aim_at(path, PASSO_PATH_UP, way, first);
+	const uint64_t level = passo_path_larger(left, passo_path_length_in(path, 2 * from, least));
+	return from > 0 && level <= choice->level ? aim_at(path, PASSO_PATH_FLAT, level, from) : whole;
 }
 
 struct passo_path_aim passo_path_soft_aim(const struct passo_path_planner *path, bool needed)
