@@ -8,6 +8,8 @@
 
 /* Half the arc of a corner of a radian, by the junction deviation: sharper ones have less. */
 #define SHARP 4u
+/* Of the tolerance: a line that is no farther off goes straight on. */
+#define STRAIGHT 64u
 /* A line that takes longer than this part of a second is not merged. */
 #define MERGED_PER_SECOND 128u
 
@@ -84,7 +86,7 @@ void passo_path_close(struct passo_path_planner *path)
 /* Whether the newest line can still become another one. */
 static bool is_open(const struct passo_path_planner *path, const struct passo_path_move *move)
 {
-	return path->open && !path->rest && (path->planned + 1 != path->added || !path->started)
+	return !path->rest && (path->planned + 1 != path->added || !path->started)
 	    && newest(path)->output == move->output && path->feed == move->feed;
 }
 
@@ -94,7 +96,7 @@ static bool merge(struct passo_path_planner *path, const struct passo_path_move 
 	if (!is_open(path, move))
 		return false;
 	const struct passo_path_merged merged = passo_path_off(path, move->target);
-	if (merged.off >= path->tolerance)
+	if (merged.off >= (path->open ? path->tolerance : path->tolerance / STRAIGHT))
 		return false;
 	const struct passo_path_place at = path->at;
 	const uint32_t dwell = path->dwell;
