@@ -155,27 +155,13 @@ static struct ahead look_ahead(
 	return ahead;
 }
 
-/* Whether a ramp down stays below all that it passes. */
-static bool is_below(const struct passo_path_planner *path, const struct passo_path_aim *aim)
+/* Whether a ramp down stays below all that it passes: what it ends below is no steeper. */
+static bool is_below(
+    const struct passo_path_planner *path, const struct ahead *ahead, const struct passo_path_aim *aim)
 {
-	const uint64_t from = passo_path_square_of(path->velocity);
-	uint64_t passed = 0, passing = from;
+	const uint64_t fall = passo_path_gain(ahead->fall, aim->length);
 
-	for (uint32_t index = path->planned;; index++) {
-		const struct passo_path_item *item = passo_path_item(path, index);
-
-		if (passing > passo_path_larger(item->top, from))
-			return false;
-		passed += (uint64_t)item->substeps << 32;
-		if (index == path->planned)
-			passed -= (uint64_t)path->offset;
-		if (passed >= aim->length)
-			return true;
-		passing = from - passo_mul_div(from - aim->square, passed, aim->length);
-		if (passing - (passing >> ROUNDED) > passo_path_end_square(path, index)
-		    || passo_path_rests_after(path, index))
-			return false;
-	}
+	return aim->square + fall <= passo_path_square_of(path->velocity);
 }
 
 static uint64_t lowest(const struct ahead *ahead)
@@ -200,24 +186,25 @@ static struct passo_path_aim calm(const struct passo_path_planner *path, uint64_
 {
 	const uint64_t from = path->velocity, slope = passo_path_item(path, path->planned)->slope;
 	const uint64_t most = from + passo_path_change(path, slope, ticks);
-	struct ahead ahead = look_ahead(path, passo_path_length_in(path, 2 * from, ticks + next), need, true);
+	struct ahead ahead =
+	    look_ahead(path, passo_path_length_in(path, 2 * from, ticks + next), need, false);
 	uint64_t to = passo_path_velocity_of(lowest(&ahead));
 
 	if (ahead.rest > 0 && from > 0) {
 		struct passo_path_aim aim =
 		    aim_at(path, passo_path_velocity_of(ahead.end), ahead.rest, ahead.slope);
 
+		if (aim.kind == PASSO_PATH_DOWN && !is_below(path, &ahead, &aim))
+			aim.length = 0;
 		aim.rest = true;
 		aim.open = ahead.open;
 		return aim;
 	}
 	if (to < from) {
-		const struct ahead passed =
-		    look_ahead(path, passo_path_length_in(path, 2 * from, ticks), need, false);
 		const uint64_t fall =
-		    passo_path_smaller(passo_path_change(path, passed.fall, ticks), from - 1) + 1;
+		    passo_path_smaller(passo_path_change(path, ahead.fall, ticks), from - 1) + 1;
 		const uint64_t most_down =
-		    steep ? ahead.slope + ahead.slope / 16 : passed.left + passed.left / STEEPER;
+		    steep ? ahead.slope + ahead.slope / 16 : ahead.left + ahead.left / STEEPER;
 
 		to = passo_path_smaller(to, from - fall);
 		if (from - to > passo_path_change(path, most_down, ticks))
@@ -249,17 +236,6 @@ static struct passo_path_aim calm(const struct passo_path_planner *path, uint64_
 	return aim;
 }
 
-/* The same, if it stays below all that it passes. */
-static struct passo_path_aim calm_below(const struct passo_path_planner *path, uint64_t ticks, uint64_t next,
-    bool steep, enum passo_path_need need)
-{
-	struct passo_path_aim made = calm(path, ticks, next, steep, need);
-
-	if (made.length > 0 && made.kind == PASSO_PATH_DOWN && !is_below(path, &made))
-		made.length = 0;
-	return made;
-}
-
 /* A ramp down, to a speed at which the known lines last: where there is no room for more of them, and they
  * are so short that they do not at this one. */
 static struct passo_path_aim brake(const struct passo_path_planner *path, uint64_t least)
@@ -281,7 +257,7 @@ static struct passo_path_aim brake(const struct passo_path_planner *path, uint64
 			slope = ahead.left;
 			continue;
 		}
-		if (ahead.rest == 0 && aim.square <= ahead.square && is_below(path, &aim))
+		if (ahead.rest == 0 && aim.square <= ahead.square && is_below(path, &ahead, &aim))
 			return aim;
 		to -= from / 4;
 	}
@@ -314,7 +290,7 @@ struct passo_path_aim passo_path_at_pace(
 		const uint64_t some = i % 3 == 1 ? longer : shorter;
 		const uint64_t next = i % 3 == 2 ? 0 : passo_path_pace_need(path, some, 2);
 
-		made = calm_below(path, some, next, i >= 3, need);
+		made = calm(path, some, next, i >= 3, need);
 	}
 	if (made.open && need == PASSO_PATH_NO_NEED) {
 		made.length = 0;
