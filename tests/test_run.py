@@ -3,6 +3,7 @@
 
 import csv
 import dataclasses
+import fcntl
 import json
 import os
 import subprocess
@@ -126,6 +127,19 @@ def test_number_of_axes(tmp_path: Path, axes: int) -> None:
     assert cli.main(["run", str(write(tmp_path, text)), "--out", str(tmp_path / "out")]) == 0
     summary = json.loads((tmp_path / "out" / "summary.json").read_text())
     assert [axis["position"] for axis in summary["axes"]] == [50, -240, 77, 2, 3, 4, 5, -4][:axes]
+
+
+def test_two_runs_do_not_write_into_one_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The second one ends, and what the first one has written stays."""
+    file, out = write(tmp_path, TWO_MOVES), tmp_path / "out"
+    assert cli.main(["run", str(file), "--out", str(out)]) == 0
+    other = os.open(out, os.O_RDONLY)
+    fcntl.flock(other, fcntl.LOCK_EX)
+    assert cli.main(["run", str(file), "--out", str(out)]) == 2
+    os.close(other)
+    assert "another run writes its results there" in capsys.readouterr().err
+    assert read_pulses(out / "pulses.csv")
+    assert cli.main(["run", str(file), "--out", str(out)]) == 0
 
 
 def test_many_moves_are_streamed(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from passo import __version__, campaign_options, console_options, expand_options, part_options
 from passo.failure import BadInputError, Failure
-from passo.output import BROKEN_PIPE, FULL, drop_output
+from passo.output import BROKEN_PIPE, FULL, drop_output, release_folders
 
 PART_SUFFIXES = (".nc", ".ngc", ".gcode", ".tap")
 OK, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
@@ -53,6 +53,8 @@ def _command(arguments: Sequence[str] | None) -> int:
         return FAILED
     except KeyboardInterrupt:
         return INTERRUPTED
+    finally:
+        release_folders()
 
 
 def _parser() -> argparse.ArgumentParser:

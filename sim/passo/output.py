@@ -2,6 +2,7 @@
 """Files that the command writes: each appears under its name when it is complete, or not at all."""
 
 import errno
+import fcntl
 import json
 import os
 import signal
@@ -15,6 +16,7 @@ from passo.failure import BadInputError, Failure
 
 BROKEN_PIPE = 128 + signal.SIGPIPE  # exit status, as of a program that the signal ends
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+_held: dict[Path, int] = {}  # folders for results, by the handles that lock them
 
 
 def refusal(path: Path, error: OSError) -> Failure | BadInputError:
@@ -50,13 +52,42 @@ def make_folder(folder: Path) -> None:
 
 
 def empty_folder(folder: Path, results: Iterable[str]) -> None:
-    """Make a folder for results, and delete those of an earlier run. Raises Failure or BadInputError."""
+    """Make a folder for results, delete those of an earlier run, and keep other runs out.
+
+    Raises Failure or BadInputError, also while another process has the folder.
+    """
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for name in results:
+            _hold(folder.resolve())
             (folder / name).unlink(missing_ok=True)
+    except BlockingIOError:
+        text = f"{folder}: another run writes its results there: wait for its end, or choose another folder"
+        raise BadInputError(text) from None
     except OSError as error:
         raise refusal(folder, error) from None
+
+
+def _hold(folder: Path) -> None:
+    """Lock a folder until the end of the command, where the file system can. Raises BlockingIOError."""
+    if folder in _held:
+        return
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(handle)
+        raise
+    except OSError:  # a file system without locks
+        os.close(handle)
+        return
+    _held[folder] = handle
+
+
+def release_folders() -> None:
+    """Let other runs have the folders."""
+    while _held:
+        os.close(_held.popitem()[1])
 
 
 def write_text(path: Path, text: str) -> None:
