@@ -52,6 +52,16 @@ def test_no_speed_while_an_axis_rests(tmp_path: Path) -> None:
     assert not np.isnan(plot_panels.measured_speeds(run, 0)[1]).any()
 
 
+def test_many_steps_are_shown_as_their_mean_speed() -> None:
+    """Steps that come unevenly make a line and no band; where they are few, each of them is seen."""
+    clocks = np.concatenate([np.cumsum([80.0, 120.0] * 50), [20_000.0, 30_000.0]])
+    speeds = np.concatenate([1 / np.diff(clocks, prepend=0)[:-2], [np.nan, 1 / 10_000]])
+    times, means = plot_panels.evened(clocks, speeds, 2000)
+    assert means[:5] == pytest.approx(0.01, rel=0.02) and len(means) == 8
+    assert np.isnan(means[6]) and (times[-1], means[-1]) == (30_000, 1 / 10_000)
+    assert len(plot_panels.evened(clocks, speeds, 200)[0]) == len(clocks)
+
+
 def test_a_single_step_has_a_line(tmp_path: Path) -> None:
     run = run_moves(tmp_path, *THERE_AND_BACK)
     for axis, count in enumerate([0, 0, 1]):

@@ -14,6 +14,7 @@ COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7b
 INK = "#24292f"
 WIDE = {"linewidth": 5, "alpha": 0.25, "solid_capstyle": "butt"}
 POINTS_MAX = 6000  # of a scatter
+WINDOWS, MANY = 600, 4  # of a plot of speeds, and steps in one of them that are shown as their mean
 PULSES_SHOWN = 8  # pulses per axis in the plots of the first and the last milliseconds
 
 
@@ -61,6 +62,24 @@ def measured_speeds(run: Run, axis: int) -> tuple[np.ndarray, np.ndarray, np.nda
     return middle, speeds, clocks[~(padded[1:] | padded[:-1])[: len(clocks)]]
 
 
+def evened(clocks: np.ndarray, speeds: np.ndarray, window: float) -> tuple[np.ndarray, np.ndarray]:
+    """Clocks and speeds, with the mean speed of each window of clocks in place of its steps if it has many.
+
+    A window ends at a rest, too, and one with few of them keeps them all.
+    """
+    if len(clocks) == 0:
+        return clocks, speeds
+    windows = np.floor(clocks / window) + np.cumsum(np.isnan(speeds) | np.isnan(np.roll(speeds, 1)))
+    starts = np.flatnonzero(np.diff(windows, prepend=-1))
+    counts = np.diff(starts, append=len(clocks))
+    means = counts / np.add.reduceat(1 / speeds, starts)
+    many = (counts >= MANY) & np.isfinite(means)
+    kept = np.repeat(~many, counts)
+    made = np.concatenate([clocks[kept], (np.add.reduceat(clocks, starts) / counts)[many]])
+    order = np.argsort(made)
+    return made[order], np.concatenate([speeds[kept], means[many]])[order]
+
+
 def plot_speed(ax: Axes, run: Run, late: float = 0) -> None:
     """Ideal speed, and the inverse of the time between steps; the motion starts at `late` seconds."""
     hz, units = run.file.clock_hz, units_of(run)
@@ -69,6 +88,7 @@ def plot_speed(ax: Axes, run: Run, late: float = 0) -> None:
         color, scale = COLORS[axis], hz * units.speed_scale * units.per_step[axis]
         ax.plot(times / hz + late, speeds[axis] * scale, color=color, **WIDE)
         clocks, measured, single = measured_speeds(run, axis)
+        clocks, measured = evened(clocks, measured, times[-1] / WINDOWS)
         ax.plot(clocks / hz + late, measured * scale, color=color, linewidth=0.9, label=f"axis {axis}")
         heights = np.interp(single, times, speeds[axis]) * scale
         ax.vlines(single / hz + late, 0, heights, color=color, linewidth=0.9)

@@ -5,7 +5,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from passo.engine import NUMBERS
-from passo.plot_panels import COLORS, INK, WIDE
+from passo.plot_panels import COLORS, INK, WIDE, WINDOWS, evened
 from passo.scene_figures import energies, mean_power
 from passo.scene_report import measured_curve, planned
 from passo.scene_run import SceneRun
@@ -31,9 +31,9 @@ def plot_scene_speed(ax: Axes, run: SceneRun) -> None:
         clocks, directions = run.steps(axis)
         gaps = np.diff(clocks)
         follows = (directions[1:] == directions[:-1]) & (gaps < REST_SECONDS * hz)
-        speeds = np.where(follows, directions[1:] / np.maximum(gaps, 1), np.nan) * hz / 1e3
-        middle = (clocks[1:] + clocks[:-1]) / 2 / hz
-        ax.plot(middle, speeds, color=COLORS[axis], linewidth=0.9, label=f"axis {axis}")
+        speeds = np.where(follows, directions[1:] / np.maximum(gaps, 1), np.nan)
+        middle, speeds = evened((clocks[1:] + clocks[:-1]) / 2, speeds, run.total_clocks / WINDOWS)
+        ax.plot(middle / hz, speeds * hz / 1e3, color=COLORS[axis], linewidth=0.9, label=f"axis {axis}")
     ax.axhline(0, color=INK, linewidth=0.5)
     ax.set_ylabel("kHz")
     is_planned = any(section.plans for section in run.sections)

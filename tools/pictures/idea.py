@@ -74,6 +74,7 @@ def _box(ax: Axes, x: float, width: float, title: str, lines: str, color: str) -
         facecolor=PALE,
         edgecolor=color,
         linewidth=1.6,
+        clip_on=False,
     )
     ax.add_patch(patch)
     ax.text(x + width / 2, 0.70, title, ha="center", va="center", fontsize=12, fontweight="bold", color=INK)
