@@ -118,6 +118,7 @@ def _draw_path(figure: plt.Figure, ax: plt.Axes, motion: Motion) -> None:
         cmap="viridis",
         linewidth=1.4,
         capstyle="round",
+        snap=False,  # whole pixels for some parts of a line, not for others, make a jog
     )
     ax.add_collection(lines)
     ax.autoscale()
