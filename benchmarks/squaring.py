@@ -19,8 +19,7 @@ import numpy as np
 from passo.build import Parameters
 from passo.console import console
 from passo.driver import Driver
-from passo.engine import model_engine, moves_of
-from passo.machine import Machine, Switch
+from passo.engine import EVENT, NUMBERS, AroundEngine, model_engine, moves_of
 from passo.native import ffi
 from passo.output import write_text
 from passo.random_cases import log_uniform
@@ -37,7 +36,7 @@ SECONDS = 30  # simulated, of a cycle at most
 POLLS = 2000  # per second
 SHARED = 0.1  # of all
 FILTERS = 2e-7, 2.7e-3  # s: the core counts 65,535 clocks
-LOOK = 2.5e-4  # s: how late a switch of the machine may be, which sees nothing during a frame
+NEVER = 1 << 40  # steps
 TICK, RATE_ONE = 128, 1 << 16  # clocks of a slew of the rate
 
 
@@ -62,6 +61,11 @@ class Gantry:
     shared: bool = False  # a home switch at the first motor, for all
 
     @property
+    def pin(self) -> str:
+        """The input of its switches."""
+        return "home" if self.shared else "limit_high" if self.high else "limit_low"
+
+    @property
     def skew(self) -> int:
         """Steps from the first motor at its switch to the last."""
         left = [abs(place - edge) for place, edge in zip(self.start, self.edges, strict=True)]
@@ -81,10 +85,10 @@ class Gantry:
 
     @property
     def stop_distance(self) -> float:
-        """Steps from an edge at full speed: filter, look of the machine, and the soft stop."""
+        """Steps from an edge at full speed: filter and soft stop."""
         slew = max(1, int(RATE_ONE * TICK / (self.stop * CLOCK_HZ)))
         slowing = (RATE_ONE // slew + 1) * TICK / CLOCK_HZ
-        return self.speed * (slowing / 2 + 2 * self.filter + self.bounce + LOOK) + 2
+        return self.speed * (slowing / 2 + 2 * self.filter + self.bounce) + 2
 
 
 def gantry_of(rng: random.Random) -> Gantry:
@@ -129,20 +133,59 @@ class Squared:
     positions: list[int]
 
 
-def begin(gantry: Gantry) -> tuple[Driver, Machine, Any]:
-    """A driver and its machine, and the parameters of the cycle."""
-    pin = "home" if gantry.shared else "limit_high" if gantry.high else "limit_low"
-    bounce = round(gantry.bounce * CLOCK_HZ)
-    switches = [
-        Switch(pin, motor, edge, gantry.high, gantry.hysteresis, bounce, stuck=gantry.stuck.get(motor))
-        for motor, edge in enumerate(gantry.edges[: 1 if gantry.shared else None])
-    ]
-    machine = Machine(model_engine(PARAMETERS, CLOCK_HZ), switches, gantry.start)
-    driver = open_driver(machine)
+class Rig(AroundEngine):
+    """A core with a gantry at its pins, exact to the clock."""
+
+    def __init__(self, gantry: Gantry):
+        super().__init__(model_engine(PARAMETERS, CLOCK_HZ))
+        config = ffi().new("struct passo_rig_config *")
+        config.seed, config.axes = 1, PARAMETERS.axes
+        config.start[0 : len(gantry.start)] = gantry.start
+        for motor, edge in enumerate(gantry.edges[: 1 if gantry.shared else None]):
+            always = gantry.stuck.get(motor)
+            config.wire[motor] = {
+                "input": NUMBERS[gantry.pin],
+                "bit": motor,
+                "axis": motor,
+                "is_switch": True,
+                "above": gantry.high,
+                "at": edge if always is None else NEVER if always != gantry.high else -NEVER,
+                "hysteresis": gantry.hysteresis,
+                "bounce": round(gantry.bounce * CLOCK_HZ),
+            }
+            config.wires = motor + 1
+        ((self._c, self._rig),) = self.engine.attach(config)
+        self._events: list[np.ndarray] = []
+
+    @property
+    def positions(self) -> list[int]:
+        """Of the motors."""
+        return [self._c.passo_rig_position(self._rig, motor) for motor in range(PARAMETERS.axes)]
+
+    def set(self, pin: str, levels: int) -> None:
+        """Set the levels of an input pin that has no switch."""
+        self.engine.set(pin, levels)
+
+    def run(self, clocks: int) -> None:
+        """Let time pass."""
+        while clocks > 0:
+            clocks -= self.engine.run(clocks)
+            self._events.append(self.engine.drain())
+
+    def drain(self) -> np.ndarray:
+        """The pin events since the last call."""
+        events, self._events = self._events, []
+        return np.concatenate([np.empty(0, EVENT), *events])
+
+
+def begin(gantry: Gantry) -> tuple[Driver, Rig, Any]:
+    """A driver and its rig, and the parameters of the cycle."""
+    rig, pin = Rig(gantry), gantry.pin
+    driver = open_driver(rig.engine)
     driver.call("configure_filter", max(1, round(gantry.filter * CLOCK_HZ)))
     stop = round(gantry.stop * CLOCK_HZ)
     driver.call("configure_motion", stop, stop, 0)
-    for motor in range(len(switches)):
+    for motor in range(1 if gantry.shared else len(gantry.edges)):
         driver.call("configure_inputs", motor, struct("input_config", **{pin: True, "limit_soft": True}))
     offsets = ffi().new("int32_t[8]", list(gantry.offsets))
     homes = ffi().new("struct passo_home[1]")
@@ -159,30 +202,27 @@ def begin(gantry: Gantry) -> tuple[Driver, Machine, Any]:
         "slow_speed": gantry.slow * Q32,
         "acceleration": 20 * gantry.speed * Q32,
     }
-    return driver, machine, (homes, offsets)
+    return driver, rig, (homes, offsets)
 
 
 def square(gantry: Gantry) -> Squared:
     """Home a gantry."""
-    driver, machine, (homes, _) = begin(gantry)
-    error = error_of(driver, "home", homes, 1)
-    end, events = machine.clock + SECONDS * CLOCK_HZ, []
-    while error == "OK" and driver.is_moving and machine.clock < end:
+    driver, rig, (homes, _) = begin(gantry)
+    error, end = error_of(driver, "home", homes, 1), rig.clock + SECONDS * CLOCK_HZ
+    while error == "OK" and driver.is_moving and rig.clock < end:
         error = error_of(driver, "poll")
-        machine.run(CLOCK_HZ // POLLS)
-        events.append(machine.drain())
-    machine.run(CLOCK_HZ // 100)
-    events.append(machine.drain())
+        rig.run(CLOCK_HZ // POLLS)
+    rig.run(CLOCK_HZ // 100)
     if driver.is_moving:
         error = "ENDLESS"
-    made = judged(gantry, error, driver, machine, np.concatenate(events))
-    machine.engine.close()
+    made = judged(gantry, error, driver, rig)
+    rig.engine.close()
     return made
 
 
-def judged(gantry: Gantry, error: str, driver: Driver, machine: Machine, events: np.ndarray) -> Squared:
+def judged(gantry: Gantry, error: str, driver: Driver, rig: Rig) -> Squared:
     """From the steps at the pins."""
-    moved, beyond, sign = [], 0, 1 if gantry.high else -1
+    events, moved, beyond, sign = rig.drain(), [], 0, 1 if gantry.high else -1
     for motor, (start, edge) in enumerate(zip(gantry.start, gantry.edges, strict=True)):
         moved.append(np.append(0, np.cumsum(moves_of(events, motor))))
         place = start + moved[-1]
@@ -193,8 +233,8 @@ def judged(gantry: Gantry, error: str, driver: Driver, machine: Machine, events:
     is_skewed = driver.lib.passo_home_is_skewed(driver.c, skewed)
     apart = [int(np.abs(one - other).max()) for i, one in enumerate(moved) for other in moved[:i]]
     ends = [
-        int(machine.positions[motor]) - edge + gantry.offsets[motor]
-        for motor, edge in enumerate(gantry.edges)
+        position - edge + offset
+        for position, edge, offset in zip(rig.positions, gantry.edges, gantry.offsets, strict=False)
     ]
     if gantry.shared:
         ends = [ends[0] - gantry.offsets[0]] * len(ends)
@@ -213,7 +253,7 @@ def judged(gantry: Gantry, error: str, driver: Driver, machine: Machine, events:
 def problems(gantry: Gantry, made: Squared) -> list[str]:
     """What a cycle may not be, of a gantry whose bound allows its skew."""
     found = []
-    racking = 0 if gantry.shared else gantry.racking + max(gantry.offsets) - min(gantry.offsets)
+    racking = 0 if gantry.shared else gantry.racking
     if made.error != "OK":
         return [f"it ended with {made.error}"]
     if made.square > 1:
@@ -246,7 +286,7 @@ with a switch pressed, {shared} have one switch for all motors.
 |---|---:|---:|
 | motor further from its switch than another, steps | {worst["square"]:g} | 1 |
 | motor off its place, of what the slow approach makes within the filter time | {worst["late"]:.3f} | 1 |
-| racking, of the bound and the offsets | {worst["racking"]:.3f} | 1 |
+| racking, of its bound | {worst["racking"]:.3f} | 1 |
 | switch passed, of the stop distance | {worst["passed"]:.3f} | 1 |
 """
 
@@ -260,10 +300,9 @@ def main(words: list[str]) -> None:
     square(gantries[0])  # builds the model before the workers begin
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         for number, (gantry, made) in enumerate(zip(gantries, pool.map(square, gantries), strict=True)):
-            spread = max(gantry.offsets) - min(gantry.offsets)
             worst["square"] = max(worst["square"], made.square)
             worst["late"] = max(worst["late"], made.late / gantry.most_late)
-            worst["racking"] = max(worst["racking"], made.racking / (gantry.racking + spread))
+            worst["racking"] = max(worst["racking"], made.racking / gantry.racking)
             worst["passed"] = max(worst["passed"], made.passed / gantry.stop_distance)
             for problem in problems(gantry, made):
                 bad += 1

@@ -7,6 +7,7 @@ import sys
 from collections.abc import Iterator
 
 import pytest
+from passo.engine import model_engine
 from passo.machine import Switch
 from passo.toolchain import paths
 
@@ -128,6 +129,41 @@ def test_a_home_that_fails_is_told_once(bench: Bench) -> None:
     assert bench.ask(f"{HOME} distance=-3000").startswith("error: MOVING: ")
     assert bench.ask("wait") == "ok"
     assert bench.tell("status")["homed"] == "0"
+
+
+@pytest.mark.parametrize(("stuck", "distance"), [(True, 300), (False, 700)])
+def test_home_with_a_switch_that_sticks(bench: Bench, stuck: bool, distance: int) -> None:
+    """Never left, or never found: at the end of the distance, not homed; the drive holds."""
+    bench.machine.switches[0].stuck = stuck
+    bench.ask("run 0.1")
+    assert bench.ask(f"{HOME} distance={-distance}").startswith("error: SWITCH_MISSED: ")
+    assert axis_0(bench) == (distance if stuck else -distance)
+    status = bench.tell("status")
+    assert status["homed"] == "none" and status["moving"] == "0" and bench.machine.enable & 1
+
+
+def test_home_ends_with_the_core(bench: Bench) -> None:
+    """A reset of the core: its position is unknown, its drives are off."""
+    bench.terminal.type(f"{HOME} distance=-3000\n".encode())
+    old = bench.machine.engine
+    with model_engine(old.parameters, old.clock_hz) as other:
+        bench.machine.engine = other
+        bench.terminal.run(200_000)
+        assert "error: CORE_RESET: " in bench.take() and not other.drain()["enable"].any()
+        assert bench.ask("open") == "ok"
+        assert bench.tell("status")["homed"] == "none"
+        bench.machine.engine = old
+
+
+def test_home_ends_with_its_host(bench: Bench) -> None:
+    """The watchdog stops the axis on its path; it is not homed."""
+    bench.machine.switches[0].stuck = False
+    bench.terminal.type(f"{HOME} distance=-6000\n".encode())
+    bench.machine.run(3 * CLOCK_HZ)
+    assert -6000 < bench.machine.positions[0] < 0
+    bench.terminal.run(200_000)
+    assert "error: WATCHDOG: " in bench.take() and bench.tell("status")["homed"] == "none"
+    assert bench.machine.enable & 1
 
 
 def test_home_without_its_drive(bench: Bench) -> None:

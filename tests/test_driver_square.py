@@ -8,7 +8,7 @@ import pytest
 from passo.random_cases import seed
 
 from benchmarks.squaring import CLOCK_HZ, Gantry, begin, gantry_of, problems, square
-from tests.helpers.driver_wire import by_speed, error_of, struct
+from tests.helpers.driver_wire import Q32, by_speed, error_of, struct
 
 SKEWED = Gantry((900, 1200), (0, 10))
 
@@ -37,6 +37,34 @@ def test_a_skew_beyond_the_bound_names_its_motor(start: tuple[int, ...], motor: 
     """And the motors are not further apart than the bound."""
     made = square(Gantry(start, (0,) * len(start), racking=400))
     assert (made.error, made.skewed) == ("SWITCH_MISSED", motor)
+    assert made.racking <= 400
+
+
+@pytest.mark.parametrize("start", [(2799, 2764), (2787, 2764), (2786, 2764), (2600, 2764)])
+def test_a_motor_close_to_its_edge_has_its_speed_there(start: tuple[int, int]) -> None:
+    """So the filter, which is two steps late here, is as late for each of them."""
+    gantry = Gantry(start, (13, -10), racking=703, slow=1919, speed=4966, filter=0.00098398, stop=0.007)
+    made = square(gantry)
+    assert problems(gantry, made) == [] and made.square == 0
+
+
+@pytest.mark.parametrize("skew", [190, 240, 255, 285, 299, 301])
+def test_an_edge_near_the_end_of_the_bound(skew: int) -> None:
+    """Its motor has its speed there, or would stop, and the cycle ends: it is never told late."""
+    gantry = Gantry((900, 900 + skew), (0, 0), racking=300, slow=2500, speed=3000, filter=0.0027)
+    made = square(gantry)
+    assert made.racking <= 300
+    if skew < 300 - 2500**2 / (2 * 20 * 3000) - 5:
+        assert problems(gantry, made) == []
+    else:
+        assert (made.error, made.skewed) == ("SWITCH_MISSED", 1)
+
+
+@pytest.mark.parametrize(("offset", "error"), [(-40, "OK"), (0, "OK"), (15, "OK"), (40, "SWITCH_MISSED")])
+def test_the_bound_is_also_one_of_offsets(offset: int, error: str) -> None:
+    """The motors would end further apart than it: they do not go there."""
+    made = square(Gantry((900, 1280), (0, 0), offsets=(0, offset, 0)))
+    assert (made.error, made.skewed) == (error, 1 if error != "OK" else None)
     assert made.racking <= 400
 
 
@@ -92,6 +120,7 @@ def test_power_off_within_the_cycle() -> None:
         ({"source": 3}, "NO_SWITCH"),  # one home switch for all
         ({"back_off": 401}, "ARGUMENT"),
         ({"pull_off": 5}, "ARGUMENT"),  # the offset is more
+        ({"slow_speed": 13_000 * Q32}, "ARGUMENT"),  # takes more than half the bound to stop
     ],
 )
 def test_what_no_gantry_has_is_refused(changes: dict[str, int], error: str) -> None:

@@ -3,12 +3,14 @@
 
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from passo.cli import main
+from passo.engine import AroundEngine
 from passo.failure import BadInputError
 from passo.grbl_setup import SettingsFile, attach, core_for, machine_at
 from passo.machine_check import check_machine
@@ -219,7 +221,7 @@ def test_offsets_are_settings(tmp_path: Path) -> None:
         assert [line for line in asked if line.startswith("$17")] == [
             "$170=0.000", "$171=0.000", "$172=0.000", "$173=0.250",
         ]  # fmt: skip
-        refused = "[MSG:$27 is at most the racking, $170 and up at most $27 where motors square]"
+        refused = "[MSG:Where motors square $27 is at most the racking, $170 and up at most $27"
         for line in ("$173=1.01", "$173=-1.01", "$171=2", "$172=0.1", "$27=3.1", "$27=0.2"):
             assert refused in session.line(line) and session.answers[-1] == "error:3"
         for line in ("$174=0", "$173=1001"):
@@ -241,6 +243,21 @@ def test_offsets_are_settings(tmp_path: Path) -> None:
     with machine_at("model", machine_of(tmp_path, **LIMITS)) as engine:  # does not square
         session = GrblConsole(engine, machine_of(tmp_path, **LIMITS))
         assert session.line("$170=0").endswith("error:3") and "$170" not in session.line("$$")
+
+
+def test_settings_that_no_gantry_squares_with(tmp_path: Path) -> None:
+    """Offsets further apart than the racking, and a speed that a motor cannot have or end within it."""
+    machine = squaring(tmp_path, racking="racking = 1.5")
+    with machine_at("model", machine) as engine:
+        session = GrblConsole(engine, machine)
+        session.limit(60)
+        session.take_all()
+        assert session.line("$171=-0.8") == "ok"
+        assert "no further apart than the racking]" in session.line("$173=0.8")
+        assert session.line("$173=0.7") == session.line("$24=6000") == "ok"
+        assert session.line("$H").splitlines() == [
+            "[MSG:$24 is too fast to stop within half the racking]", "error:5",
+        ]  # fmt: skip
 
 
 def test_positions_of_motors(session: GrblConsole) -> None:
@@ -285,10 +302,99 @@ def test_a_gantry_that_is_too_skewed(tmp_path: Path, skew: int, name: str) -> No
         assert session.status()["state"] == "Alarm"
 
 
+def test_a_switch_of_a_gantry_that_sticks(tmp_path: Path) -> None:
+    """It is not left, by no motor before another: alarm 9, the position is unknown, the motors are held."""
+    machine = squaring(tmp_path)
+    with open_engine("model", core_for(machine), machine.clock_hz) as engine:
+        ((library, rig),) = attach(engine, machine, {3: 10_000})  # its switch is active wherever it is
+        before = [library.passo_rig_position(rig, motor) for motor in (1, 3)]
+        session = GrblConsole(engine, machine)
+        session.limit(60)
+        assert session.line("$H").splitlines()[-2:] == ["ALARM:9", "error:9"]
+        driver = session.grbl.player.feed.driver
+        one, other = (library.passo_rig_position(rig, motor) for motor in (1, 3))
+        assert one - before[0] == other - before[1] < 0
+        assert session.status()["state"] == "Alarm" and session.line("G0 X1") == "error:9"
+        assert not any(driver.lib.passo_is_homed(driver.c, motor) for motor in (1, 3))
+
+
+class Wired(AroundEngine):
+    """A core that can be replaced by one that is fresh from its reset."""
+
+    def transfer(self, mosi: Sequence[int], gap: int) -> list[int]:
+        """One chip select."""
+        return list(self.engine.transfer(mosi, gap))
+
+    def run(self, clocks: int) -> int:
+        """Let time pass."""
+        return int(self.engine.run(clocks))
+
+    def drain(self) -> np.ndarray:
+        """The pin events."""
+        return self.engine.drain()
+
+
+def in_mid_squaring(session: GrblConsole, library: Any, rig: Any) -> None:
+    """Begin a home, until one motor is on its own."""
+    session.grbl.type(b"$H\n")
+    skew = library.passo_rig_position(rig, 3) - library.passo_rig_position(rig, 1)
+    assert session.grbl.wait(
+        lambda: library.passo_rig_position(rig, 3) - library.passo_rig_position(rig, 1) != skew, 30
+    )
+
+
+def test_a_reset_of_the_core_in_mid_squaring(tmp_path: Path) -> None:
+    """Alarm 3; the position is unknown, the drives are off; the next start squares what is left."""
+    machine = squaring(tmp_path)
+    with (
+        open_engine("model", core_for(machine), machine.clock_hz) as engine,
+        open_engine("model", core_for(machine), machine.clock_hz) as other,
+    ):
+        ((library, rig),) = attach(engine, machine, {3: -100})
+        session = GrblConsole(wired := Wired(engine), machine)
+        in_mid_squaring(session, library, rig)
+        left = library.passo_rig_position(rig, 3) - library.passo_rig_position(rig, 1)
+        ((library, rig),) = attach(other, machine, {3: left})
+        wired.engine = other
+        session.run(0.1)
+        assert session.log.endswith("ALARM:3\r\nerror:9\r\n") and session.status()["state"] == "Alarm"
+        driver = session.grbl.player.feed.driver
+        assert driver.fault == "CORE_RESET" and not driver.lib.passo_is_homed(driver.c, 1)
+        assert not other.drain()["enable"].any()
+        assert_squares(GrblConsole(other, machine), library, rig)
+
+
+def test_a_host_that_dies_in_mid_squaring(tmp_path: Path) -> None:
+    """The watchdog of the core stops the motors within the bound, and holds them; so does the next start."""
+    machine = squaring(tmp_path)
+    with open_engine("model", core_for(machine), machine.clock_hz) as engine:
+        ((library, rig),) = attach(engine, machine, {3: -100})
+        in_mid_squaring(GrblConsole(engine, machine), library, rig)
+        for _ in range(100):
+            engine.run(machine.clock_hz // 100)
+        ends = [library.passo_rig_position(rig, motor) for motor in (1, 3)]
+        engine.drain()
+        engine.run(machine.clock_hz)
+        assert [library.passo_rig_position(rig, motor) for motor in (1, 3)] == ends
+        assert abs(ends[1] - ends[0] + 100) <= 3 * 80 and not len(engine.drain())
+        session = GrblConsole(engine, machine)
+        assert session.status()["state"] == "Alarm"
+        assert_squares(session, library, rig)
+
+
+def assert_squares(session: GrblConsole, library: Any, rig: Any) -> None:
+    session.limit(60)
+    assert session.line("$H").endswith("ok")
+    ends = [library.passo_rig_position(rig, motor) - 80 * 20 for motor in (1, 3)]
+    assert ends == pytest.approx([-80, -80], abs=1)
+
+
 @pytest.mark.parametrize(
     ("more", "racking", "told"),
     [
         ("", "racking = 0.5", "home: racking must be at least pull_off, 1 mm"),
+        ("", "racking = 0.09\npull_off = 0.05", "axis 2: home: speed needs 0.05 mm to stop"),
+        ("offsets = [-1, 0.5]", "racking = 1", "axis 2: offsets are 1.5 mm apart; must be at most racking"),
         ("offsets = [0, 2]", "racking = 3", "axis 2: offsets must be at most pull_off, 1 mm"),
         ("offsets = [0]", "racking = 3", "axis 2: offsets must be an array of 2 numbers"),
         ("offsets = [0, 0.1]", "", "axis 2: offsets are of motors that square: home: racking is missing"),
@@ -332,6 +438,9 @@ def test_a_machine_with_a_board(tmp_path: Path, capsys: pytest.CaptureFixture[st
     made = definitions(read_machine(path))
     assert (made["MOTORS_PLUS"], made["MOTORS_MINUS"], made["MOTORS_SPEED"]) == (0x040103, 0x0200, 200)
     path.write_text(path.read_text().replace("STM32F103CB", "STM32F103C8"))
+    with pytest.raises(BadInputError, match="axes: 5 requested, but the table has pins for 4"):
+        path.with_name("big.toml").write_text(text.replace('name = "Y"', 'name = "Y"\nmotors = 3'))
+        read_machine(path.with_name("big.toml"))
     assert main(["make", str(path), "--no-build"]) == 2
     assert "the motors are X+Y, X-Y, Z; the firmware for STM32F103C8" in capsys.readouterr().err
 

@@ -12,7 +12,7 @@ from typing import Any
 from passo.driver import Driver
 from passo.failure import BadInputError, Failure
 from passo.gcode import Gcode, set_tool_lengths
-from passo.grbl_setup import SettingsFile, defaults_of, setup_of
+from passo.grbl_setup import SettingsFile, defaults_of, encoders_of, setup_of
 from passo.machine_file import MachineFile
 from passo.native import ffi, planner
 from passo.part import LOOPS_PER_SECOND, SLEWS_PER_SECOND
@@ -52,7 +52,9 @@ class Grbl:
         self._settings = settings
         self._defaults = defaults_of(machine)
         pages = settings.c if settings else ffi().NULL
-        self._setup = setup_of(machine, engine.parameters, self._defaults, pages)
+        given = encoders_of(machine)
+        self._encoders = ffi().new("uint64_t[]", given) if given else ffi().NULL
+        self._setup = setup_of(machine, engine.parameters, self._defaults, pages, self._encoders)
         self._c.passo_grbl_open(self.c, self.player.c, self._sink, self._setup)
         set_tool_lengths(self.player.gcode.c, tools or {})
         self._check()

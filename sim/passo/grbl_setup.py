@@ -14,10 +14,11 @@ import numpy as np
 from passo.build import Parameters
 from passo.engine import NUMBERS
 from passo.failure import BadInputError
-from passo.machine_file import MachineFile, check_pins
+from passo.machine_file import ENCODER_FILTER, RATIO_ONE, MachineFile, check_pins
 from passo.moves import PinTiming
 from passo.native import ffi, planner
 from passo.output import write_bytes
+from passo.rig import gap_of
 from passo.run import open_engine, parameters_for
 from passo.values import BadValueError
 
@@ -124,8 +125,16 @@ def defaults_of(machine: MachineFile) -> Any:
     return ffi().callback("void(struct passo_grbl_settings *)", set_defaults)
 
 
-def setup_of(machine: MachineFile, parameters: Parameters, defaults: Any, pages: Any) -> Any:
-    """The `struct passo_grbl_setup`; `pages` is that of a file, or NULL."""
+def encoders_of(machine: MachineFile) -> list[int]:
+    """Those of a `struct passo_grbl_setup`; none: there is none."""
+    if not machine.encoders:
+        return []
+    pairs = (machine.encoders.get(motor, (0, 0)) for motor in range(len(machine.motors)))
+    return [number for counts, limit in pairs for number in (round(counts * (1 << 32)), limit)]
+
+
+def setup_of(machine: MachineFile, parameters: Parameters, defaults: Any, pages: Any, encoders: Any) -> Any:
+    """The `struct passo_grbl_setup`; `pages` is that of a file, or NULL, `encoders` an array, or NULL."""
     made = ffi().new("struct passo_grbl_setup *")
     made.path = machine.settings.struct(parameters)[0]
     made.defaults = defaults
@@ -135,6 +144,7 @@ def setup_of(machine: MachineFile, parameters: Parameters, defaults: Any, pages:
         made.homed |= (end.home is not None) << axis
     made.squared = sum(1 << axis for axis in machine.squared)
     made.racking = round(machine.switches.racking * 1000)
+    made.encoders = encoders
     made.probe, made.pages = machine.switches.probe, pages
     return made
 
@@ -158,6 +168,7 @@ def attach(engine: Any, machine: MachineFile, skews: dict[int, int] | None = Non
         round(float(limits.steps_per_mm) * end.travel)
         for limits, end in zip(machine.settings.axes, machine.ends, strict=True)
     ]
+    _add_encoders(config, machine)
     for motor, start in enumerate(rows @ np.array(travels) // 2):
         config.start[motor] = start + (skews or {}).get(motor, 0)
     for axis, (travel, end) in enumerate(zip(travels, machine.ends, strict=True)):
@@ -182,11 +193,27 @@ def attach(engine: Any, machine: MachineFile, skews: dict[int, int] | None = Non
     return engine.attach(config)
 
 
+def _add_encoders(config: Any, machine: MachineFile) -> None:
+    for number, (motor, (counts, _)) in enumerate(machine.encoders.items()):
+        ratio = round(counts / machine.settings.scales[motor] * RATIO_ONE)
+        config.wheel[number] = {"axis": motor, "ratio": ratio, "gap": gap_of(ENCODER_FILTER)}
+    config.wheels = len(machine.encoders)
+
+
+def attach_encoders(engine: Any, machine: MachineFile) -> None:
+    """The encoders of a machine, and nothing else of it."""
+    if machine.encoders:
+        config = ffi().new("struct passo_rig_config *")
+        config.axes = engine.parameters.channels * engine.parameters.axes
+        _add_encoders(config, machine)
+        engine.attach(config)
+
+
 @contextmanager
 def machine_at(name: str, machine: MachineFile) -> Iterator[Any]:
     """An engine with the machine at its pins."""
     with open_engine(name, core_for(machine), machine.clock_hz) as engine:
-        if machine.has_inputs:
+        if machine.has_inputs or machine.encoders:
             attach(engine, machine)
         yield engine
 

@@ -17,6 +17,7 @@ from passo.gcode import AXIS_LETTERS, GcodeSettings
 from passo.move_file import read_pins
 from passo.moves import PinTiming
 from passo.path import Motors, PathAxis, PathSettings
+from passo.registers import CHANNEL_ENCODER_FILTER_FILTER_RESET as ENCODER_FILTER
 from passo.table_values import (
     Table,
     check_known,
@@ -41,7 +42,7 @@ FILE_KEYS = (
 )
 AXIS_KEYS = (
     *("name", "steps_per_mm", "speed", "acceleration", "jerk", "jump", "travel", "home", "switches"),
-    *("motors", "offsets"),
+    *("motors", "offsets", "encoders", "following"),
 )
 MOTOR_KEYS = ("speed", "acceleration", "jerk")
 KINEMATICS = {"cartesian": (), "corexy": (0, 1), "corexz": (0, 2)}  # the two axes that share two motors
@@ -54,6 +55,9 @@ SWITCHES = ("home", "limit_low", "limit_high")
 CHIPS = ("STM32F103C8", "STM32F103CB")
 PROFILES = ("linear", "cosine", "sigmoid", "jerk")
 TRAVEL = 200  # mm
+RATIO_ONE = 1 << 16  # counts per step
+FOLLOWING_COUNTS = 65535  # of a following error, at most
+COUNT_CLOCKS = ENCODER_FILTER + 2  # from a count of an encoder to the next
 WAITING_STEPS = 2
 JUNCTION_DEVIATION, ARC_TOLERANCE = 0.01, 0.002  # mm
 
@@ -67,6 +71,8 @@ class AxisEnds:
     switches: tuple[str, ...] = ()
     motors: int = 1
     offsets: tuple[float, ...] = ()  # mm, of each motor: its edge from that of the axis; none: 0
+    encoders: tuple[float, ...] = ()  # counts per mm of that of each motor; 0, none: it has none
+    following: float = 0  # mm that a motor may be from its encoder
 
     @property
     def homing_switch(self) -> str | None:
@@ -141,6 +147,16 @@ class MachineFile:
                 found[motor] = round(offset * 1_000_000)
         return found
 
+    @property
+    def encoders(self) -> dict[int, tuple[float, int]]:
+        """Motors with an encoder: its counts per mm, and those of following error that stop the machine."""
+        return {
+            motor: (counts, round(counts * end.following))
+            for axis, end in enumerate(self.ends)
+            for motor, counts in zip(self.motors_of(axis), end.encoders, strict=False)
+            if counts
+        }
+
     def motors_of(self, axis: int) -> list[int]:
         """The motors that an axis is named after: its own, and those behind the axes."""
         rows = self.settings.motors.map(len(self.ends))
@@ -207,7 +223,7 @@ def _machine(path: Path, data: Table) -> MachineFile:
     )
     kinematics, motors = _motors(data, axes, ends)
     switches = _switches(data)
-    _check_squared(ends, switches)
+    _check_squared(axes, ends, switches)
     spindle = read_positive(data, "spindle_maximum") if "spindle_maximum" in data else 0
     board, clock_hz = _board(
         data, wanted_hz, ends, len(motors.map(len(axes))), _parts(ends, switches, spindle)
@@ -216,6 +232,8 @@ def _machine(path: Path, data: Table) -> MachineFile:
     deviation = _number(data, "junction_deviation", JUNCTION_DEVIATION)
     settings = PathSettings(axes, clock_hz, junction_deviation=deviation, profile=profile, motors=motors)
     check_pins(settings, timing)
+    for number, (axis, end) in enumerate(zip(axes, ends, strict=True), 1):
+        within(f"axis {number}", lambda axis=axis, end=end: _check_encoders(axis, end, clock_hz))
     if switches.soft_limits and not any(end.home for end in ends):
         raise BadValueError("soft_limits: no axis has a home")
     tolerance = _number(data, "arc_tolerance", ARC_TOLERANCE)
@@ -241,22 +259,33 @@ def _squares(end: AxisEnds) -> bool:
     return end.motors > 1 and end.home is not None
 
 
-def _check_squared(ends: Sequence[AxisEnds], switches: Switches) -> None:
+def _check_squared(axes: Sequence[PathAxis], ends: Sequence[AxisEnds], switches: Switches) -> None:
     """Each motor of an axis that squares has its own limit switch, and moves off it in any case."""
-    for number, end in enumerate(ends, 1):
-        if end.offsets and not (switches.racking and _squares(end)):
-            raise BadValueError(f"axis {number}: offsets are of motors that square: home: racking is missing")
-        if switches.racking and _squares(end) and end.homing_switch == "home":
-            raise BadValueError(
-                f"axis {number}: {end.motors} motors and one home switch: to square, each has "
-                f'switches = ["limit_{end.home}"]'
-            )
-        if any(abs(offset) > switches.pull_off for offset in end.offsets):
-            raise BadValueError(f"axis {number}: offsets must be at most pull_off, {switches.pull_off:g} mm")
     if switches.racking and not any(map(_squares, ends)):
         raise BadValueError("home: racking needs an axis with a home and several motors")
     if switches.racking and switches.racking < switches.pull_off:
         raise BadValueError(f"home: racking must be at least pull_off, {switches.pull_off:g} mm")
+    for number, (axis, end) in enumerate(zip(axes, ends, strict=True), 1):
+        squares = switches.racking and _squares(end)
+        if end.offsets and not squares:
+            raise BadValueError(f"axis {number}: offsets are of motors that square: home: racking is missing")
+        if squares:
+            within(f"axis {number}", lambda axis=axis, end=end: _check_gantry(axis, end, switches))
+
+
+def _check_gantry(axis: PathAxis, end: AxisEnds, switches: Switches) -> None:
+    if end.homing_switch == "home":
+        raise BadValueError(
+            f'{end.motors} motors and one home switch: to square, each has switches = ["limit_{end.home}"]'
+        )
+    if any(abs(offset) > switches.pull_off for offset in end.offsets):
+        raise BadValueError(f"offsets must be at most pull_off, {switches.pull_off:g} mm")
+    apart = max(end.offsets, default=0) - min(end.offsets, default=0)
+    if apart > switches.racking:
+        raise BadValueError(f"offsets are {apart:g} mm apart; must be at most racking, {switches.racking:g}")
+    stop = min(switches.speed, float(axis.speed)) ** 2 / 2 / float(axis.acceleration)
+    if stop >= switches.racking / 2:
+        raise BadValueError(f"home: speed needs {stop:g} mm to stop; must be less than half of racking")
 
 
 def _motors(data: Table, axes: Sequence[PathAxis], ends: Sequence[AxisEnds]) -> tuple[str, Motors]:
@@ -313,8 +342,12 @@ def _check_shared(
 
 
 def _parts(ends: Sequence[AxisEnds], switches: Switches, spindle_maximum: int) -> tuple[str, ...]:
-    inputs = switches.probe or any(end.switches for end in ends)
-    return tuple(part for part, needed in (("inputs", inputs), ("outputs", spindle_maximum > 0)) if needed)
+    needs = {
+        "inputs": switches.probe or any(end.switches for end in ends),
+        "encoders": any(end.encoders for end in ends),
+        "outputs": spindle_maximum > 0,
+    }
+    return tuple(part for part, needed in needs.items() if needed)
 
 
 def _board(
@@ -431,17 +464,48 @@ def _ends(table: Table) -> AxisEnds:
     if not travel:
         raise BadValueError("travel must be greater than 0")
     motors = read_integer(table, "motors", 1, MOTORS_MOST) if "motors" in table else 1
-    ends = AxisEnds(travel, home, tuple(switches), motors, _offsets(table, motors))
+    ends = AxisEnds(
+        *(travel, home, tuple(switches), motors, _of_motors(table, "offsets", motors)),
+        *(_of_motors(table, "encoders", motors), _number(table, "following", 0)),
+    )
+    _check_following(ends)
     if ends.homing_switch not in (None, *switches):
         raise BadValueError(f'home = "{home}" needs "home" or "{ends.homing_switch}" in switches')
     return ends
 
 
-def _offsets(table: Table, motors: int) -> tuple[float, ...]:
-    given = table.get("offsets", [])
+def _of_motors(table: Table, key: str, motors: int) -> tuple[float, ...]:
+    given = table.get(key, [])
     if not isinstance(given, list) or len(given) not in (0, motors):
-        raise BadValueError(f"offsets must be an array of {motors} numbers, one for each motor")
-    return tuple(float(read_signed({"offsets": value}, "offsets")) for value in given)
+        raise BadValueError(f"{key} must be an array of {motors} numbers, one for each motor")
+    return tuple(float(read_signed({key: value}, key)) for value in given)
+
+
+def _check_following(ends: AxisEnds) -> None:
+    """The encoders of its motors have a following error that they can count."""
+    if any(counts < 0 for counts in ends.encoders):
+        raise BadValueError("encoders must not be negative: swap A and B")
+    if ends.encoders and not any(ends.encoders):
+        raise BadValueError("encoders: no motor has one")
+    if bool(ends.encoders) != bool(ends.following):
+        raise BadValueError("encoders and following need each other: counts per mm, and mm")
+    for counts in filter(None, ends.encoders):
+        limit = counts * ends.following
+        if not 1 <= round(limit) <= FOLLOWING_COUNTS:
+            raise BadValueError(f"following is {limit:g} counts; must be 1 to {FOLLOWING_COUNTS}")
+
+
+def _check_encoders(axis: PathAxis, ends: AxisEnds, clock_hz: int) -> None:
+    """They can be counted at the highest speed."""
+    fastest = float(axis.speed) * max(ends.encoders, default=0)
+    if fastest > clock_hz / COUNT_CLOCKS:
+        raise BadValueError(
+            f"encoders make {fastest:g} counts/s at speed; the core can take {clock_hz / COUNT_CLOCKS:g}"
+        )
+    for counts in filter(None, ends.encoders):
+        ratio = counts / float(axis.steps_per_mm)
+        if not 1 <= round(ratio * RATIO_ONE) < 1 << 32:
+            raise BadValueError(f"encoders: {ratio:g} counts per step cannot be set")
 
 
 def _number(table: Table, key: str, default: float) -> float:

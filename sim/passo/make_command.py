@@ -22,7 +22,7 @@ from passo.console import stages
 from passo.drives import drives
 from passo.failure import BadInputError, Failure
 from passo.gcode import AXIS_LETTERS
-from passo.grbl_setup import MILLION, default_settings, setting_counts
+from passo.grbl_setup import MILLION, default_settings, encoders_of, setting_counts
 from passo.machine_file import CHIPS, MOTOR_KEYS, MachineFile, read_machine
 from passo.machine_sheet import Sheet, Wire, draw, page
 from passo.native import ffi, planner
@@ -48,6 +48,7 @@ REVERSE = 1  # the output that a laser does not have
 OUTPUTS = ("spindle on", "spindle reverse", "flood coolant", "mist coolant")  # bits 0 to 3
 SWITCH_PORTS = {"limit_low": "limit, low end", "limit_high": "limit, high end", "home": "home switch"}
 AXIS_PORTS = {"step": "STEP (PUL)", "dir": "DIR", "enable": "EN (ENA)"}
+ENCODER_PORTS = {"encoder_a": "A", "encoder_b": "B", "encoder_index": "index, or ground"}
 INPUT_NAMES = {pin.name for pin in INPUTS}
 OTHER_PORTS = {
     "power": "spindle PWM or laser",
@@ -110,6 +111,8 @@ def _check_firmware(machine: MachineFile) -> None:
             f"{machine.path}: the motors are {', '.join(machine.motors)}; "
             f'the firmware for {chip} has one for each axis, chip = "{LARGE}" has others'
         )
+    if machine.encoders and chip != LARGE:
+        raise BadInputError(f'{machine.path}: the firmware for {chip} has no encoders, chip = "{LARGE}" has')
     if any(float(getattr(machine.settings.motors.mixed, key)) % 1 for key in MOTOR_KEYS):
         raise BadInputError(f"{machine.path}: motors: the firmware takes whole numbers")
     if axes > CHIP_AXES[chip]:
@@ -202,6 +205,8 @@ def _end(machine: MachineFile, chosen: Board, host: dict[str, str], name: str, i
         ]
         axis = next(axis for axis in range(len(machine.ends)) if index in machine.motors_of(axis))
         return "".join(f"{AXIS_LETTERS[axis]}: {SWITCH_PORTS[port]}" for port in served)
+    if name in ENCODER_PORTS:
+        return f"encoder {machine.motors[index]}: {ENCODER_PORTS[name]}" if index in machine.encoders else ""
     if name == "probe":
         return "probe" if machine.switches.probe else ""
     if name == "outputs":
@@ -259,6 +264,7 @@ def definitions(machine: MachineFile) -> dict[str, Any]:
         "OUTPUTS": int("outputs" in machine.parts),
         **_motors(machine.settings.motors),
         **(_squares(machine) if machine.squared else {}),
+        **({"ENCODERS": ",".join(map(str, encoders_of(machine)))} if machine.encoders else {}),
     }
 
 

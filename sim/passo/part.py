@@ -18,7 +18,7 @@ from passo.expand.tools import Tool, lengths
 from passo.failure import BadInputError
 from passo.gcode import NANOMETERS, GcodeError, has_words, lines
 from passo.host_loop import HostLoop
-from passo.machine_file import MachineFile
+from passo.machine_file import RATIO_ONE, MachineFile
 from passo.native import ffi
 from passo.pair_engine import PairEngine
 from passo.path import LOOK_AHEAD
@@ -81,6 +81,7 @@ class Played:
     matched_edges: int | None
     events: np.ndarray  # of the pins, EVENT
     origin: int  # clock of the start of the first motion
+    following: dict[str, float]  # greatest following errors of motors with an encoder, in mm
     canceled: str = ""  # where, if it was
 
     @cached_property
@@ -239,6 +240,10 @@ def play_part(
         driver.configure_axis(motor, machine.pins)
     slew = machine.clock_hz // SLEWS_PER_SECOND
     driver.call("configure_motion", slew, slew, 1 << 16)
+    for motor, (counts, limit) in machine.encoders.items():
+        ratio = round(counts / machine.settings.scales[motor] * RATIO_ONE)
+        config = {"ratio": ratio, "limit": limit, "stop": driver.lib.PASSO_FOLLOWING_SOFT}
+        driver.call("configure_encoder", motor, ffi().new("struct passo_encoder_config *", config))
     program = Program(driver, machine.settings, machine.gcode, look_ahead)
     program.begin(part.begin.gcode, part.begin.steps)
     loop = HostLoop(engine, machine.clock_hz // LOOPS_PER_SECOND)
@@ -273,5 +278,14 @@ def play_part(
     drained = int(snapshot.drained)
     return Played(
         *(part, machine, steps.clocks, steps.positions, motions, end, drained, cause, matched),
-        *(steps.events, steps.origin, canceled),
+        *(steps.events, steps.origin, _following(driver, machine), canceled),
     )
+
+
+def _following(driver: Driver, machine: MachineFile) -> dict[str, float]:
+    found = {}
+    for motor, (counts, _) in machine.encoders.items():
+        reading = ffi().new("struct passo_encoder_reading *")
+        driver.call("read_encoder", motor, reading)
+        found[machine.motors[motor]] = reading.greatest / counts
+    return found

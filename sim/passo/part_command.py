@@ -4,7 +4,7 @@
 import sys
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ from passo.course import Course
 from passo.expand.tools import read_tools
 from passo.failure import BadInputError
 from passo.gcode import NANOMETERS
+from passo.grbl_setup import attach_encoders
 from passo.machine_file import MachineFile, read_machine
 from passo.output import empty_folder, write_json
 from passo.part import Lines, Part, Played, plan_part, play_part, read_part
@@ -103,10 +104,11 @@ def play_to(
     course = Course(plan_part(part, machine, asked.look_ahead), part.begin.place)
     if window:
         check_window(window, machine.clock_hz, round(course.seconds * machine.clock_hz))
-    core_of = parameters_for(len(machine.motors))
+    core_of = replace(parameters_for(len(machine.motors)), encoders=int(bool(machine.encoders)))
     with open_engine(engine, core_of, machine.clock_hz, window is not None) as core:
         empty_folder(out, (SUMMARY, PICTURE, PULSES, PAGE, *FILES))
         with recorded(core, window, out) if window else nullcontext():
+            attach_encoders(core, machine)
             played = play_part(part, machine, core, report, asked.look_ahead)
     if window:
         write_view(out, core_of, machine.clock_hz, {0: len(machine.motors)}, played.origin)
@@ -161,6 +163,7 @@ def _summary(
         "pulses": [len(clocks) for clocks in played.clocks],
         "limits": {name: asdict(share) for name, share in greatest(judged).items()},
         "highest": _highest(machine, judged),
+        "following": played.following,
     }
 
 

@@ -110,7 +110,8 @@ enum passo_home_phase {
 	PASSO_HOME_BACK_OFF,
 	PASSO_HOME_SLOW, /* seeks the edge slowly */
 	PASSO_HOME_PULL_OFF,
-	/* squaring: one motor leaves its switch, further, and seeks its edge */
+	/* squaring: the motors are in line; one leaves its switch, goes further, and seeks its edge */
+	PASSO_HOME_LINE,
 	PASSO_HOME_LEAVE,
 	PASSO_HOME_LEFT,
 	PASSO_HOME_SEEK
@@ -118,13 +119,14 @@ enum passo_home_phase {
 #ifndef PASSO_CARTESIAN
 /* Motors of an axis that are homed one by one. */
 struct passo_square {
-	uint8_t first;                 /* to reach its switch */
-	uint8_t motor;                 /* whose switch ends the motion */
-	uint8_t stopped;               /* bits of those whose limits have ended it */
-	uint8_t known;                 /* bits of those whose edges are known */
-	uint8_t rounds;                /* slow approaches */
-	int32_t edge[PASSO_AXES_MAX];  /* positions of the motors */
-	int32_t begin[PASSO_AXES_MAX]; /* when the first edge was known */
+	uint8_t first;                /* to reach its switch */
+	uint8_t motor;                /* whose switch ends the motion */
+	uint8_t stopped;              /* bits of those whose limits have ended it */
+	uint8_t known;                /* bits of those whose edges are known */
+	uint8_t rounds;               /* slow approaches */
+	int32_t line[PASSO_AXES_MAX]; /* positions of the motors at the first switch */
+	int32_t edge[PASSO_AXES_MAX]; /* and at their own */
+	int32_t least, most;          /* steps from the line to where those end whose edges are known */
 };
 #endif
 struct passo;

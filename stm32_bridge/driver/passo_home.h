@@ -27,8 +27,8 @@ struct passo_home {
 	uint8_t forward, backward; /* bits of the motors that move, the same way or the other way; 0: the axis
 	                              alone. Its position is the mean of theirs, with these signs */
 	/* Squaring, if above 0: each motor of `forward` by its own limit switch, the source. The most steps
-	 * by which any of them moves further than another one while they seek their switches; at least
-	 * back_off. */
+	 * by which any of them moves further than another one, to its edge and with its offset to the end; at
+	 * least back_off, and twice what slow_speed takes to stop. */
 	uint32_t racking;
 	const int32_t *offset; /* of motors, at most pull_off: position of its edge from that of the axis,
 	                          steps; null: 0 */

@@ -52,6 +52,9 @@ struct passo_grbl_setup {
 #ifndef PASSO_CARTESIAN
 	uint8_t squared;  /* of these, axes each of whose motors has its own limit switch at that end */
 	uint32_t racking; /* um: see passo_home.h */
+	/* Two of each motor: counts of its encoder per mm, UQ32.32 (0: it has none), and those of following
+	 * error that stop the machine; null: there is no encoder. */
+	const uint64_t *encoders;
 #endif
 	bool probe;                              /* a probe is fitted */
 	const struct passo_storage_pages *pages; /* null: no persistent storage */

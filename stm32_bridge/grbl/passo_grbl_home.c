@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Homing: Z first, then the other axes, as the settings say.
  */
+#include "passo_driver.h"
 #include "passo_grbl_private.h"
 #include "passo_math.h"
 
@@ -53,6 +54,21 @@ static void set_offsets(struct passo_grbl *grbl)
 
 		grbl->offset[motor] = offset < 0 ? -size : size;
 	}
+}
+
+/* Whether motors that square can: see passo_home.h. */
+static bool can_stop(struct passo_grbl *grbl, uint8_t count)
+{
+	const struct passo *passo = grbl->player->feed->passo;
+
+	for (uint8_t i = 0; i < count; i++) {
+		if (passo_driver_squares(&grbl->home[i])
+		    && passo_driver_check_square(passo, &grbl->home[i]) == PASSO_ERROR_ARGUMENT) {
+			passo_grbl_say(grbl, "[MSG:$24 is too fast to stop within half the racking]\r\n");
+			return false;
+		}
+	}
+	return true;
 }
 
 /* The motor that did not reach its switch within the bound. */
@@ -113,9 +129,6 @@ enum passo_gcode_error passo_grbl_home(struct passo_grbl *grbl)
 	struct passo *passo = grbl->player->feed->passo;
 	uint8_t count = 0;
 
-#ifndef PASSO_CARTESIAN
-	set_offsets(grbl);
-#endif
 	for (unsigned i = 0; i < PASSO_GCODE_AXES_MAX; i++) {
 		const uint8_t axis = ORDER[i];
 
@@ -126,6 +139,11 @@ enum passo_gcode_error passo_grbl_home(struct passo_grbl *grbl)
 		return PASSO_GCODE_NO_HOMING;
 	if (!passo_grbl_is_idle(grbl))
 		return PASSO_GCODE_NOT_IDLE;
+#ifndef PASSO_CARTESIAN
+	set_offsets(grbl);
+	if (!can_stop(grbl, count))
+		return PASSO_GCODE_NO_HOMING;
+#endif
 	if (passo_grbl_drive(grbl, true) != PASSO_OK || passo_home(passo, grbl->home, count) != PASSO_OK)
 		return PASSO_GCODE_NO_HOMING;
 	grbl->homes = true;

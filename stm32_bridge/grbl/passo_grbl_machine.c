@@ -2,6 +2,7 @@
  * The machine that the settings describe.
  */
 #include "passo_driver.h"
+#include "passo_encoder.h"
 #include "passo_grbl_private.h"
 #include "passo_inputs.h"
 #include "passo_math.h"
@@ -186,6 +187,27 @@ static enum passo_error apply_inputs(struct passo_grbl *grbl)
 	return error;
 }
 
+#ifndef PASSO_CARTESIAN
+enum passo_error passo_grbl_apply_encoders(struct passo_grbl *grbl)
+{
+	enum passo_error error = PASSO_OK;
+
+	for (uint8_t motor = 0; error == PASSO_OK && motor < passo_grbl_motors(grbl); motor++) {
+		if (!passo_grbl_has_encoder(grbl, motor))
+			continue;
+		const uint64_t *encoder = &grbl->setup->encoders[2u * motor];
+		const uint64_t ratio = passo_mul_div(encoder[0], UINT64_C(1) << 16,
+		    grbl->path.axis[passo_grbl_axis_of(grbl, motor)].steps_per_mm);
+
+		error = passo_configure_encoder(grbl->player->feed->passo, motor,
+		    &(struct passo_encoder_config){.ratio = ratio <= UINT32_MAX ? (uint32_t)ratio : 0u,
+			.limit = (uint16_t)encoder[1],
+			.stop = PASSO_FOLLOWING_SOFT});
+	}
+	return error;
+}
+#endif
+
 /* Full power in proportion is at the highest speed of all axes. */
 static enum passo_error apply_outputs(struct passo_grbl *grbl)
 {
@@ -223,23 +245,33 @@ static bool can_square(struct passo_grbl *grbl)
 	return true;
 }
 #else
-/* Motors that square leave their switches within the bound, whatever their offsets. */
+/* Motors that square leave their switches within the bound, whatever their offsets; and those of an axis that
+ * is square are at their switches within it. */
 static bool can_square(struct passo_grbl *grbl)
 {
 	const struct passo_grbl_settings *settings = &grbl->stored.settings;
+	const int64_t *offset = settings->axis[PASSO_GRBL_OFFSET];
 	const int64_t pull_off = settings->value[PASSO_GRBL_PULL_OFF];
-	bool can = grbl->setup->squared == 0 || pull_off <= grbl->setup->racking * INT64_C(1000);
+	const int64_t racking = grbl->setup->racking * INT64_C(1000);
+	bool can = grbl->setup->squared == 0 || pull_off <= racking;
 
 	for (unsigned motor = 0; motor < passo_grbl_motors(grbl); motor++) {
-		const bool squares = (grbl->setup->squared >> passo_grbl_axis_of(grbl, motor) & 1) != 0;
-		const int64_t offset = settings->axis[PASSO_GRBL_OFFSET][motor],
-			      most = squares ? pull_off : 0;
+		const unsigned axis = passo_grbl_axis_of(grbl, motor);
+		const int64_t most = (grbl->setup->squared >> axis & 1) != 0 ? pull_off : 0;
 
-		can = can && offset <= most && -offset <= most;
+		can = can && offset[motor] <= most && -offset[motor] <= most;
+		for (unsigned other = 0; other < motor; other++) {
+			const int64_t apart = offset[motor] - offset[other];
+
+			can = can
+			   && (passo_grbl_axis_of(grbl, other) != axis
+			       || (apart <= racking && -apart <= racking));
+		}
 	}
 	if (!can)
 		passo_grbl_say(grbl,
-		    "[MSG:$27 is at most the racking, $170 and up at most $27 where motors square]\r\n");
+		    "[MSG:Where motors square $27 is at most the racking, $170 and up at most $27, and no "
+		    "further apart than the racking]\r\n");
 	return can;
 }
 #endif
@@ -274,6 +306,12 @@ enum passo_gcode_error passo_grbl_apply(struct passo_grbl *grbl)
 		error = apply_inputs(grbl);
 	if (error == PASSO_OK && passo->has_outputs)
 		error = apply_outputs(grbl);
+#ifndef PASSO_CARTESIAN
+	if (error == PASSO_OK)
+		error = passo_grbl_apply_encoders(grbl);
+	if (error == PASSO_ERROR_RATIO)
+		return PASSO_GCODE_STATEMENT;
+#endif
 	if (error == PASSO_OK)
 		error = passo_player_restart(grbl->player);
 	passo_grbl_override(grbl);

@@ -61,6 +61,16 @@ static inline struct passo_grbl_counts passo_grbl_counts(const struct passo_grbl
 	};
 }
 
+#ifndef PASSO_CARTESIAN
+static inline bool passo_grbl_has_encoder(const struct passo_grbl *grbl, unsigned motor)
+{
+	return grbl->setup->encoders && grbl->setup->encoders[2u * motor] > 0;
+}
+
+/* At rest: following errors are 0. Error: RATIO. */
+enum passo_error passo_grbl_apply_encoders(struct passo_grbl *grbl);
+#endif
+
 /* The axis that a motor is named after. */
 static inline unsigned passo_grbl_axis_of(const struct passo_grbl *grbl, unsigned motor)
 {

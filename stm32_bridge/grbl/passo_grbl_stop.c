@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Real-time requests: they pass the lines that wait. What they do in each state: passo_grbl_state.c.
  */
+#include "passo_encoder.h"
 #include "passo_grbl_private.h"
 
 #define PERCENT_FULL 100u
@@ -103,7 +104,23 @@ static void reset(struct passo_grbl *grbl, bool homed)
 	grbl->greets = true;
 }
 
-/* After e-stop, alarm and watchdog as well. Whether the channel can move again. */
+#ifndef PASSO_CARTESIAN
+/* The motors are where their encoders say; nowhere if one is too far away for that. */
+static void adopt(struct passo_grbl *grbl)
+{
+	struct passo *passo = grbl->player->feed->passo;
+
+	for (uint8_t motor = 0; motor < passo_grbl_motors(grbl); motor++) {
+		if (passo_grbl_has_encoder(grbl, motor)
+		    && passo_adopt_encoder(passo, motor) == PASSO_ERROR_OFF_SCALE) {
+			passo_grbl_apply_encoders(grbl);
+			return;
+		}
+	}
+}
+#endif
+
+/* After e-stop, alarm, watchdog and following error as well. Whether the channel can move again. */
 static bool clear(struct passo_grbl *grbl)
 {
 	struct passo *passo = grbl->player->feed->passo;
@@ -111,6 +128,10 @@ static bool clear(struct passo_grbl *grbl)
 	if (passo->has_inputs && passo_fault(passo) == PASSO_ERROR_ESTOP
 	    && passo_clear_estop(passo) != PASSO_OK)
 		return false;
+#ifndef PASSO_CARTESIAN
+	if (passo_fault(passo) == PASSO_ERROR_FOLLOWING)
+		adopt(grbl);
+#endif
 	return passo_clear(passo) == PASSO_OK && passo_grbl_drive(grbl, true) == PASSO_OK;
 }
 

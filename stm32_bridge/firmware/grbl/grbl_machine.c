@@ -56,7 +56,10 @@ static void grbl_defaults(struct passo_grbl_settings *settings)
 _Static_assert(AXES <= GRBL_AXES_MAX, "the image has fewer axes");
 #ifdef PASSO_CARTESIAN
 _Static_assert(MOTORS == 0, "the image has a motor for each axis");
+_Static_assert(!HAS_ENCODERS, "the image has no encoders");
 #else
+static const uint64_t ENCODER[2u * PASSO_AXES_MAX] = {ENCODERS};
+
 _Static_assert(
     MOTORS == 0 || (MOTORS >= AXES && MOTORS <= PASSO_PATH_AXES_MAX), "the image has fewer motors");
 
@@ -83,6 +86,10 @@ enum passo_error grbl_machine_check(struct passo *passo)
 		return PASSO_ERROR_PARAMETERS;
 	if (inputs && !passo->has_inputs)
 		return PASSO_ERROR_NO_INPUTS;
+#ifndef PASSO_CARTESIAN
+	if (HAS_ENCODERS && !passo->has_encoders)
+		return PASSO_ERROR_NO_ENCODERS;
+#endif
 	return OUTPUTS != 0 && !passo->has_outputs ? PASSO_ERROR_NO_OUTPUTS : PASSO_OK;
 }
 
@@ -106,5 +113,6 @@ void grbl_machine(
 	set_motors(&setup->path);
 	setup->squared = SQUARED;
 	setup->racking = RACKING;
+	setup->encoders = HAS_ENCODERS ? ENCODER : NULL;
 #endif
 }

@@ -69,12 +69,24 @@
 #define RACKING 0
 #endif
 
+/* Encoders: for each motor counts per mm, UQ32.32 (0: it has none), and those of following error that stop
+ * the machine, as in ENCODERS=0,0,42949672960,5. Not in an image with PASSO_CARTESIAN. */
+#ifdef ENCODERS
+#define HAS_ENCODERS 1
+#else
+#define HAS_ENCODERS 0
+#endif
+#ifndef ENCODERS
+#define ENCODERS 0
+#endif
+
 /* Axes that `$H` homes, by their home or limit switch. */
 #ifndef HOMED
 #define HOMED HOMES
 #endif
 
-/* Whether the core has what the machine needs. Errors: PARAMETERS (fewer axes), NO_INPUTS, NO_OUTPUTS. */
+/* Whether the core has what the machine needs. Errors: PARAMETERS (fewer axes), NO_INPUTS, NO_OUTPUTS,
+ * NO_ENCODERS. */
 enum passo_error grbl_machine_check(struct passo *passo);
 
 /* The setup of the core that is open. `pages` is where settings are kept. */
