@@ -15,8 +15,9 @@
 /* On an arc at a speed v, of a radius r, the ramp that is steepest at t takes 3 v t / r of the jerk: with
  * half of it along the arc, 0.7 are left. UQ0.16. */
 #define ACROSS 15463u
-/* In square_between(). */
+/* In square_between(): of a curve, and of a zigzag, where no ramp has half of the jerk. */
 #define JUMP 5u
+#define ZIGZAG 8u
 /* Corners of a curve: less is a zigzag. */
 #define TURNS 3u
 /* A twentieth of the deviation (UQ32.16 substeps), UQ.8 substeps. */
@@ -183,20 +184,21 @@ static bool turns_back(const struct passo_path_planner *path, const int32_t *uni
 	return product < 0;
 }
 
-/* Highest square where a curve of several lines passes into one to the other side, in the middle of the last
+/* Highest square where a curve, or a zigzag, passes into one to the other side, in the middle of the last
  * line. The acceleration jumps by `k v^2`, `k` the change of the curvature. Steps that are off by
  * `e` show a jerk of `0.75 k v^2 / w - 8 e / w^3` over a time w, so `k v^3 sqrt(k / e) / 11` at most; `e` is
  * that of chords, and of lines that are merged. Half of the jerk is for the ramps in the curves. */
 static uint64_t square_between(const struct passo_path_planner *path, const struct passo_path_corner *corner,
     const int32_t *unit, uint64_t turn, uint64_t jerk)
 {
-	if (path->at.turns < TURNS || !corner->bends_before || !turns_back(path, unit))
+	if (path->at.turns == 0 || !corner->bends_before || !turns_back(path, unit))
 		return PASSO_PATH_SQUARE_MAX;
 	const uint64_t last = passo_mul_div(path->at.turn, corner->over, path->at.over);
 	const uint64_t radius = radius_of(corner->over, turn + last);
+	const uint64_t jump = path->at.turns < TURNS ? ZIGZAG * jerk : JUMP * jerk;
 	const uint64_t off =
 	    path->deviation / OFF_PART + passo_mul_shift(corner->over, passo_path_larger(turn, last), 56);
-	return soft_square(radius * passo_isqrt64(passo_path_smaller(off, UINT32_MAX) * radius), JUMP * jerk);
+	return soft_square(radius * passo_isqrt64(passo_path_smaller(off, UINT32_MAX) * radius), jump);
 }
 
 /* The curve of the new line, for the next corner. */
