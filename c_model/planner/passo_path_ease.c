@@ -17,7 +17,7 @@
 #define ACROSS 15463u
 /* In square_between(): of a curve, and of a zigzag, where no ramp has half of the jerk. */
 #define JUMP 5u
-#define ZIGZAG 8u
+#define ZIGZAG 6u
 /* Corners of a curve: less is a zigzag. */
 #define TURNS 3u
 /* A twentieth of the deviation (UQ32.16 substeps), UQ.8 substeps. */
