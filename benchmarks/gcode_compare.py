@@ -37,25 +37,30 @@ def main() -> int:
     asked.add_argument("--seed", type=int, default=random_cases.seed())
     options = asked.parse_args()
     count, seed = options.programs, options.seed
-    different = _compare("programs", count, seed, random_program, play_passo, _judge)
+    play = gcode_expand.play_expanded
+    different = _compare("programs", _random(random_program, count, seed), play_passo, _judge)
     for kind, made, judge in gcode_expand.KINDS:
-        share = count // len(gcode_expand.KINDS)
-        different += _compare(f"expanded {kind}", share, seed, made, gcode_expand.play_expanded, judge)
+        programs = _random(made, count // len(gcode_expand.KINDS), seed)
+        different += _compare(f"expanded {kind}", programs, play, judge)
+    for kind, corpus, judge in gcode_expand.CORPORA:
+        different += _compare(f"{kind} of the corpus", dict(corpus()), play, judge)
     return different > 0
+
+
+def _random(make: Callable[[random.Random], list[str]], count: int, seed: int) -> dict[str, list[str]]:
+    names = (f"{number} of seed {seed}" for number in range(count))
+    return {name: make(random.Random(f"{seed} {number}")) for number, name in enumerate(names)}
 
 
 def _compare(
     kind: str,
-    programs: int,
-    seed: int,
-    make: Callable[[random.Random], list[str]],
+    programs: dict[str, list[str]],
     play: Callable[[Sequence[str]], Played],
     judge: Callable[[Sequence[str], Played], str],
 ) -> int:
     """Compare programs of a kind; return how many differ."""
     counts: Counter[str] = Counter()
-    for number in range(programs):
-        program = make(random.Random(f"{seed} {number}"))
+    for name, program in programs.items():
         ours = play(program)
         counts["lines"] += len(program)
         counts["motions"] += len(ours.motions)
@@ -63,10 +68,10 @@ def _compare(
         counts["refused"] += ours.refused > 0
         if found := judge(program, ours):
             counts["different"] += 1
-            print(f"{kind}, {number} of seed {seed}: {found}", *program, sep="\n")
+            print(f"{kind}, {name}: {found}", *program, sep="\n")
     names = ("lines", "motions", "arcs", "refused", "different")
     told = ", ".join(f"{counts[name]:,} {name}" for name in names)
-    print(f"{programs:,} {kind} of seed {seed}: {told}")
+    print(f"{len(programs):,} {kind}: {told}")
     return counts["different"]
 
 

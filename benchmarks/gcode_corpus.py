@@ -30,11 +30,29 @@ TOPICS = {
     "cycles": """
         G0 {a}0 {b}0 {c}3 | M3 S100 G98 G81 {a}1 {b}1 {c}-1 R1 | {a}2 | G82 {b}2 {c}-1.5 R1 P.1 | {a}1 L2 |
         G80 | G0 {c}1 | G99 G85 {a}1 {b}1 {c}-1 R.5 | {a}2 | G89 {b}2 {c}-.5 R.5 P.2 |
-        G73 {a}1 {c}-1 R.5 Q1 | G80 | G98 G86 {a}3 {c}-1 R.5 P.1 | G80 | G0 {c}3
+        G73 {a}1 {c}-1 R.5 Q1 | G80 | G0 {c}1 |
+        G83 {b}1 {c}-1 R.5 Q2 | G80 | G98 G86 {a}3 {c}-1 R.5 P.1 | G80 | G0 {c}3
     """,
     "outputs": """
         M3 S500 G1 {a}1 | M8 {b}1 | M7 | {c}1 | S250 M4 {a}2 | M9 {b}2 | M5 G4 P.5 | S800 | M3 {a}0 |
-        M62 P1 {a}1 | M64 P0 | {b}1 | M63 P1 {a}2 | M62 P3 | M65 P0 {b}2 | M30
+        M62 P1 {a}1 | M64 P0 | {b}1 | M63 P1 {a}2 | M62 P3 | M65 P0 {b}2 | M5 |
+        M67 E0 Q50 {a}1 | {b}1 |
+        M68 E0 Q12.5 | {a}2 | G3 {a}1 {b}1 R5 M67 E0 Q3 | M66 P2 L0 | M66 P1 L4 Q1 G1 {a}0 |
+        M68 E0 Q0 {b}0 | M30
+    """,
+    "tools": """
+        G10 L1 P3 Z.5 | T3 M6 | G43 G0 {c}1 | {a}1 | T4 | G43.1 Z.25 | G1 {b}1 | G43.2 H3 | {a}2 {c}2 | G49 |
+        {b}2 | M61 Q4 | G43 H3 G0 {a}0 | {c}3 | M6 | G49 | G1 {a}1 {c}1 | G90 G53 {a}1 {c}.5 | M2
+    """,
+    "probes": """
+        G1 {a}1 {c}2 | G38.2 {c}-1 | G1 {a}2 | F30 G38.3 {b}3 | G1 {c}1 | G38.4 {c}2 | G0 {a}4 |
+        G38.5 {a}3 {b}2 | G61.1 G1 {b}1 | {a}1 | G64 P.1 {b}2 | G91 G1 {c}1
+    """,
+    "axes": """
+        G0 A90 {a}1 | G1 {b}1 B-45 C10.5 | {a}2 A-30 | G2 {a}1 {b}1 R4 A15 C20 | G3 {a}2 {b}2 {c}1 R3 B1 |
+        G10 L2 P3 A10 B-5 | G56 G0 {a}1 A0 | G57 B5 {b}1 | G58 C1 {c}1 | G10 L20 P4 C2 | G57 G1 {a}1 C3 |
+        G92 A1 | G1 {a}3 A2 | G92.1 | G93 G1 {b}3 F4 | G94 F50 | G28.1 | G0 {a}9 A9 | G28 A1 |
+        G91 G1 A5 {a}1 | G90 G53 G0 C1 {c}1
     """,
     "values": """
         #1=1 #2=[#1+1] | #3=[#2*3 mod 4] | G1 {a}#1 {b}[#2/4] {c}-#3 | #<width>=2.5 #<_all>=[2**3/4] |
@@ -60,7 +78,8 @@ TOPICS = {
         S300 M3 {a}[#<_spindle_on>+#<_rpm>/100] {b}#<_spindle_cw> |
         {b}[#<_call_level>+1] {c}[#<_inverse_time>+#<_units_per_minute>+1] | M8 {c}[1+#<_flood>] |
         {a}[#<_mist>+.5] | #13=[#<_imperial>+#<_incremental>*2] {a}[1+#13] {b}[#<_line>/10] |
-        {a}[#5400+1] {c}[#<_ccomp>/400]
+        {a}[#5400+1] {c}[#<_ccomp>/400] |
+        M66 P3 L0 | {a}[#5399+2] | M66 P0 L4 Q.5 | {b}[#5399+3]
     """,
 }
 # Compensation is for two of the planes. Distances are increments.

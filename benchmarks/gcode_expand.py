@@ -13,13 +13,14 @@ from passo.gcode import GcodeSettings
 from passo.output import write_text
 
 from benchmarks.gcode_contours import contour_program
+from benchmarks.gcode_corpus import contours, corpus
 from benchmarks.gcode_language import language_program
 from benchmarks.gcode_motion import Played, verdict
 from benchmarks.gcode_passo import SPEEDS, Passo
 from benchmarks.gcode_rs274 import INCH, TOOLS, play_rs274
 
 OPTIONS = Options(
-    GcodeSettings(axes=3, spindle_maximum=SPEEDS),
+    GcodeSettings(axes=6, spindle_maximum=SPEEDS),
     {tool: Tool(tool, tool / 100 * INCH) for tool in range(1, TOOLS)},
     at_zero=True,
     limit=20_000,
@@ -31,7 +32,7 @@ STRICTER = ("would cut the contour", "has no center with this tool")
 
 def play_expanded(program: Sequence[str], options: Options = OPTIONS) -> Played:
     """The motions of a program, labelled with its lines, and the line at which it is refused."""
-    passo = Passo()
+    passo = Passo(options.gcode.axes)
     with tempfile.TemporaryDirectory() as name:
         path = Path(name) / "part.ngc"
         write_text(path, "\n".join([*program, ""]))
@@ -79,3 +80,4 @@ KINDS = (
     ("programs", language_program, _judge_expanded),
     ("contours", contour_program, _judge_contour),
 )
+CORPORA = (("programs", corpus, _judge_expanded), ("contours", contours, _judge_contour))

@@ -8,27 +8,29 @@ from dataclasses import dataclass, field, replace
 
 PLANES = {"XY": (0, 1, 2), "XZ": (2, 0, 1), "YZ": (1, 2, 0)}
 NOWHERE = 0.01  # mm; random lines are longer
+AXES = 6  # of an end
 
 
 @dataclass(frozen=True)
 class Outputs:
-    """Of spindle, coolant, and M62 to M65."""
+    """Of spindle, coolant, and M62 to M68."""
 
     turns: int = 0  # 1 clockwise, -1 the other way
     rpm: float = 0
     flood: bool = False
     mist: bool = False
     digital: int = 0  # a bit for each P
+    analog: float = 0  # Q of E0
 
     def differs(self, other: "Outputs") -> bool:
-        """Speeds are those of a spindle that turns."""
-        apart = self.turns != 0 and abs(self.rpm - other.rpm) > 0.02
-        return apart or replace(self, rpm=0) != replace(other, rpm=0)
+        """Speeds are those of a spindle that turns; E0 is seen while it does not."""
+        apart = abs(self.rpm - other.rpm) > 0.02 if self.turns else abs(self.analog - other.analog) > 0.002
+        return apart or replace(self, rpm=0, analog=0) != replace(other, rpm=0, analog=0)
 
 
 @dataclass(frozen=True)
 class Motion:
-    """A line, an arc, or a dwell, in mm and machine coordinates."""
+    """A line, an arc, a probe, or a dwell, in mm and machine coordinates."""
 
     label: int  # of its line, from 1 on
     end: tuple[float, ...] = ()
@@ -37,6 +39,7 @@ class Motion:
     plane: tuple[int, int, int] = PLANES["XY"]
     clockwise: bool = False
     dwell: float | None = None  # s
+    probes: bool = False
     outputs: Outputs = field(default_factory=Outputs)
     tolerance: float = 0  # mm, of G64
     unit: float = 1  # mm: the coarsest one that a figure before was printed in
@@ -58,7 +61,7 @@ def labelled(program: Sequence[str]) -> list[str]:
 
 def moving(motions: Sequence[Motion]) -> Iterator[Motion]:
     """Without lines that go nowhere: rs274 calls one for a G1 without axis words."""
-    at = (0.0, 0.0, 0.0)
+    at = (0.0,) * AXES
     for motion in motions:
         if motion.dwell is not None or motion.center is not None or math.dist(motion.end, at) > NOWHERE:
             yield motion
@@ -72,6 +75,7 @@ def difference(a: Motion, b: Motion) -> str:
         a.label != b.label
         or (a.dwell is None) != (b.dwell is None)
         or (a.center is None) != (b.center is None)
+        or a.probes != b.probes
     ):
         return "kind"
     if a.outputs.differs(b.outputs):

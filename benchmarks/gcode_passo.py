@@ -5,27 +5,31 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 from passo.gcode import NANOMETERS, Gcode, GcodeError, GcodeSettings
 from passo.native import planner
 
-from benchmarks.gcode_motion import PLANES, Motion, Outputs, Played, labelled
+from benchmarks.gcode_motion import AXES, PLANES, Motion, Outputs, Played, labelled
 
 SPEEDS = 1000  # rpm of full power
 POWER = 65535
 SPINDLE, REVERSE, FLOOD, MIST = (1 << bit for bit in (16, 17, 18, 19))
 DIGITAL_AT, DIGITALS = 20, 15
+TOUCHED = 0.254  # mm before the end of a probe, as in rs274
 
 
 class Passo:
     """Passo's interpreter, line by line."""
 
-    def __init__(self) -> None:
-        self.gcode = Gcode(GcodeSettings(axes=3, spindle_maximum=SPEEDS))
+    def __init__(self, axes: int = 3) -> None:
+        self.gcode = Gcode(GcodeSettings(axes=axes, spindle_maximum=SPEEDS))
+        self.axes = axes
         self.motions: list[Motion] = []
         self.label = 0
 
     def execute(self, line: str) -> None:
         """A line; raises GcodeError."""
+        began = np.array(self.gcode.position)
         self.gcode.execute(line)
         self.label += 1
         c = planner()
@@ -41,20 +45,31 @@ class Passo:
                         tolerance=_tolerance(action),
                     )
                 )
-            elif action.kind == c.PASSO_GCODE_LINE and arc is None:
+            elif action.kind == c.PASSO_GCODE_CHANGE:
+                c.passo_gcode_load(self.gcode.c, action.tool)
+            elif action.kind in (c.PASSO_GCODE_LINE, c.PASSO_GCODE_PROBE) and arc is None:
                 self.motions.append(self._motion(action, None))
+            if action.kind == c.PASSO_GCODE_PROBE:
+                self._touch(began)
         if arc is not None:
             self.motions.append(self._motion(action, arc))
 
+    def _touch(self, began: np.ndarray) -> None:
+        end = np.array(self.gcode.position)
+        way = (began - end)[:3]
+        end[:3] += np.rint(way * (TOUCHED * NANOMETERS / np.linalg.norm(way))).astype(int)
+        planner().passo_gcode_set_position(self.gcode.c, end.tolist())
+
     def _motion(self, action: Any, arc: Any) -> Motion:
         feed = 0 if action.feed == (1 << 64) - 1 else action.feed / 2**32 * 60
-        end = tuple(n / NANOMETERS for n in self.gcode.position) if arc is not None else None
+        end = self.gcode.position if arc is not None else tuple(action.target[0 : self.axes])
         made = Motion(
             self.label,
-            end or tuple(n / NANOMETERS for n in action.target[0:3]),
+            tuple(n / NANOMETERS for n in end) + (0.0,) * (AXES - self.axes),
             feed,
             outputs=_outputs(action.output),
             tolerance=_tolerance(action),
+            probes=action.kind == planner().PASSO_GCODE_PROBE,
         )
         if arc is None:
             return made
@@ -71,8 +86,8 @@ def _tolerance(action: Any) -> float:
 
 def _outputs(word: int) -> Outputs:
     turns = (-1 if word & REVERSE else 1) if word & SPINDLE else 0
-    rpm, digital = (word & POWER) / POWER * SPEEDS, word >> DIGITAL_AT & DIGITALS
-    return Outputs(turns, rpm, bool(word & FLOOD), bool(word & MIST), digital)
+    share, digital = (word & POWER) / POWER, word >> DIGITAL_AT & DIGITALS
+    return Outputs(turns, share * SPEEDS, bool(word & FLOOD), bool(word & MIST), digital, 100 * share)
 
 
 def play_passo(program: Sequence[str]) -> Played:

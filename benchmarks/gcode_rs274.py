@@ -17,7 +17,7 @@ from passo.failure import Failure
 from passo.output import write_text
 from passo.toolchain import paths
 
-from benchmarks.gcode_motion import PLANES, Motion, Outputs, Played, labelled
+from benchmarks.gcode_motion import AXES, PLANES, Motion, Outputs, Played, labelled
 
 RS274 = paths.root / ".venv" / "rs274"  # by tools/setup.sh gcode
 CALL = re.compile(r" *\d+ N(\S+) +(\w+)\((.*)\)")
@@ -59,9 +59,16 @@ def play_rs274(program: Sequence[str]) -> Played:
     return Played(list(_motions(calls)), int(label[1]), said[0])
 
 
+def _position(numbers: Sequence[float], scale: float) -> np.ndarray:
+    """X Y Z in units, A B C in degrees."""
+    return np.array(numbers[:AXES]) * ([scale] * 3 + [1.0] * (AXES - 3))
+
+
 def _motions(calls: Sequence[str]) -> Iterator[Motion]:
     scale, unit, feed, outputs, plane, tolerance = 1.0, 1.0, 0.0, Outputs(), "XY", 0.0
-    offsets = {name: np.zeros(3) for name in ("SET_G5X_OFFSET", "SET_G92_OFFSET", "USE_TOOL_LENGTH_OFFSET")}
+    offsets = {
+        name: np.zeros(AXES) for name in ("SET_G5X_OFFSET", "SET_G92_OFFSET", "USE_TOOL_LENGTH_OFFSET")
+    }
     for line in calls:
         if not (call := CALL.match(line)):
             continue
@@ -82,16 +89,19 @@ def _motions(calls: Sequence[str]) -> Iterator[Motion]:
             case "SELECT_PLANE":
                 plane = text[-2:]
             case "SET_G5X_OFFSET":
-                offsets[name] = np.array(numbers[1:4]) * scale
+                offsets[name] = _position(numbers[1:], scale)
             case "SET_G92_OFFSET" | "USE_TOOL_LENGTH_OFFSET":
-                offsets[name] = np.array(numbers[:3]) * scale
-            case "STRAIGHT_TRAVERSE" | "STRAIGHT_FEED":
-                end = tuple((np.array(numbers[:3]) * scale + origin).tolist())
-                yield replace(made, end=end, feed=feed if name == "STRAIGHT_FEED" else 0)
+                offsets[name] = _position(numbers, scale)
+            case "STRAIGHT_TRAVERSE" | "STRAIGHT_FEED" | "STRAIGHT_PROBE":
+                end = tuple((_position(numbers, scale) + origin).tolist())
+                probes = name == "STRAIGHT_PROBE"
+                rapid = name == "STRAIGHT_TRAVERSE"
+                yield replace(made, end=end, feed=0 if rapid else feed, probes=probes)
             case "ARC_FEED":
                 axes = PLANES[plane]
                 end_of = dict(zip(axes, (numbers[0], numbers[1], numbers[5]), strict=True))
-                end = tuple(end_of[axis] * scale + origin[axis] for axis in range(3))
+                linear = [end_of[axis] for axis in range(3)]
+                end = tuple((_position(linear + numbers[6:], scale) + origin).tolist())
                 center = tuple(numbers[2 + i] * scale + origin[axes[i]] for i in range(2))
                 turns = {"plane": axes, "clockwise": numbers[4] < 0}
                 yield replace(made, end=end, feed=feed, center=center, **turns)
@@ -105,6 +115,8 @@ def _motions(calls: Sequence[str]) -> Iterator[Motion]:
                 outputs = replace(outputs, flood=name == "FLOOD_ON")
             case "MIST_ON" | "MIST_OFF":
                 outputs = replace(outputs, mist=name == "MIST_ON")
+            case "SET_MOTION_OUTPUT_VALUE" | "SET_AUX_OUTPUT_VALUE":
+                outputs = replace(outputs, analog=numbers[1])
             case "SET_MOTION_OUTPUT_BIT" | "SET_AUX_OUTPUT_BIT":
                 outputs = replace(outputs, digital=outputs.digital | 1 << int(numbers[0]))
             case "CLEAR_MOTION_OUTPUT_BIT" | "CLEAR_AUX_OUTPUT_BIT":

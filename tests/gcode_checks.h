@@ -48,6 +48,10 @@ static void act(struct passo_path_planner *path, struct passo_gcode *gcode,
 		must((action->output & ~PASSO_GCODE_OUTPUTS_DIGITAL) == 0, "it turns", text);
 		passo_gcode_load(gcode, action->tool);
 	}
+	if (action->kind == PASSO_GCODE_INPUT)
+		must(action->input < gcode->settings.inputs
+		         && (action->microseconds > 0 || action->wanted == PASSO_GCODE_WANTED_NOW),
+		    "no input", text);
 	if (action->kind != PASSO_GCODE_LINE)
 		return;
 	must(action->feed > 0, "no feed", text);

@@ -23,9 +23,9 @@ static size_t any_line(char *text)
 	static const char *const COMMANDS[] = {"G0", "G1", "G2", "G3", "G4P.1", "G10L2P1", "G10L20P0", "G17",
 	    "G18", "G19", "G20", "G21", "G28", "G28.1", "G30", "G30.1", "G38.2", "G40", "G43.1", "G49", "G53",
 	    "G54", "G59", "G61", "G80", "G90", "G91", "G91.1", "G92", "G92.1", "G93", "G94", "M0", "M2", "M3",
-	    "M5", "M8", "M30", "M6", "M61Q3", "M62P1", "M63", "M64P3", "M65P0", "G43", "G43H2", "G43.2H1",
-	    "G10L1P1", "G10L1P2Z3", "G73", "G81", "G82", "G83Q1", "G89", "G98", "G99", "G61.1", "G64P.1", "G",
-	    "M", "G38.9", "(", ")", ";", "/", "%"};
+	    "M5", "M8", "M30", "M6", "M61Q3", "M62P1", "M63", "M64P3", "M65P0", "M66P1L3Q2", "M66P0",
+	    "M67E0Q50", "M68E0", "G43", "G43H2", "G43.2H1", "G10L1P1", "G10L1P2Z3", "G73", "G81", "G82",
+	    "G83Q1", "G89", "G98", "G99", "G61.1", "G64P.1", "G", "M", "G38.9", "(", ")", ";", "/", "%"};
 	size_t length = 0;
 
 	if (below(20) == 0) {
@@ -38,7 +38,7 @@ static size_t any_line(char *text)
 			length += (size_t)sprintf(
 			    text + length, "%s", COMMANDS[below(sizeof COMMANDS / sizeof *COMMANDS)]);
 		} else {
-			text[length++] = "XYZABCIJKRFPLSTNHQ"[below(18)];
+			text[length++] = "XYZABCIJKRFPLSTNHQE"[below(19)];
 			length += add_number(text + length);
 		}
 	}
@@ -52,7 +52,7 @@ static void fuzz(void)
 
 	begin(&path, &gcode,
 	    &(struct passo_gcode_settings){(uint8_t)(1 + below(6)), 1 + below(1u << below(20)), below(20000),
-		below(2) != 0u, below(2000)});
+		below(2) != 0u, below(2000), 0, (uint8_t)below(8), below(2) != 0u});
 	for (unsigned count = below(200); count > 0; count--) {
 		char text[TEXT] = "";
 		const size_t length = any_line(text);

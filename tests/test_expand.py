@@ -2,6 +2,7 @@
 """`passo expand`: parameters, expressions and O words as LinuxCNC has them, judged by its own interpreter."""
 
 import random
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,6 +19,7 @@ from passo.toolchain import paths
 from benchmarks.gcode_corpus import corpus
 from benchmarks.gcode_expand import compare_expanded, play_expanded
 from benchmarks.gcode_language import language_program
+from tests.test_gcode_words import GROUP
 
 PROGRAMS = 60
 MACHINE = paths.examples / "gcode" / "machine.toml"
@@ -49,6 +51,20 @@ def test_corpus(name: str) -> None:
     assert not played.refused and len(played.motions) > 5
 
 
+def test_the_corpus_has_all_words() -> None:
+    """At least 40 programs; those of each plane, units and distance mode have every word of docs/gcode.md."""
+    found: dict[str, set[str]] = {}
+    for name, program in CORPUS.items():
+        text = " ".join(program).upper()
+        commands = {f"{letter}{float(number):g}" for letter, number in re.findall(r"([GM])([0-9.]+)", text)}
+        letters = set(re.findall(r"[A-Z](?=[-+.#\[0-9])", text))
+        found.setdefault(name.split(" ", 1)[1], set()).update(commands | letters)
+    modes = {mode for combination in found for mode in combination.split()}
+    assert len(CORPUS) >= 40 and len(found) == 12
+    for combination, words in found.items():
+        assert not GROUP.keys() - modes - set("IJK") - words, combination  # a plane has two of I J K
+
+
 def test_random_programs() -> None:
     """The same motions as rs274, and the same line refused."""
     motions = refused = 0
@@ -60,6 +76,23 @@ def test_random_programs() -> None:
         motions += len(played.motions)
         refused += played.refused > 0
     assert motions > 3 * PROGRAMS and refused < PROGRAMS / 2
+
+
+def test_the_result_of_m66(tmp_path: Path) -> None:
+    """Of inputs that never change: those given, or low ones; of a machine that is not known, none."""
+    lines = {"M66 P2": 1, "M66 P2 L3 Q1": 1, "M66 P2 L4 Q1": -1, "M66 P2 L1 Q1": -1, "M66 P2 L2 Q1": -1}
+    low = {"M66 P1 L0": 0, "M66 P1 L3 Q1": -1, "M66 P1 L4 Q1": 0, "M66 P1 L1 Q1": -1}
+    options = Options(GcodeSettings(axes=3, levels=1 << 2))
+    for line, value in {**lines, **low}.items():
+        assert expanded(tmp_path, f"{line}\nG0 X#5399", options) == [line, f"G0 X{value}"]
+    assert expanded(tmp_path, "M66 P2\nG0 X#5399") == ["M66 P2", "G0 X0"]
+    said = refusal(tmp_path, "M66 P2\nG0 X#5399", Options())
+    assert said == "2: word X: #5399 cannot be known while expanding: it is the result of M66 (--inputs)"
+    command = ["expand", str(tmp_path / "part.ngc"), "--out", str(tmp_path / "plain.nc"), "--inputs"]
+    assert main([*command, "0,2"]) == 0 and (tmp_path / "plain.nc").read_text().endswith("G0 X1\n")
+    for wrong in ("9", "x", "-1"):
+        with pytest.raises(SystemExit):
+            main([*command[:-1], f"--inputs={wrong}"])
 
 
 @pytest.mark.parametrize(
@@ -135,11 +168,10 @@ REFUSED = {
     "return, if, while, do, repeat, break, continue",
     "M99": "1: M99 of the main program repeats it without end: write M2 or M30",
     "G0 X#5063": "1: word X: #5063 cannot be known while expanding: it is the result of a probe",
-    "G0 X#5399": "1: word X: #5399 cannot be known while expanding: it is the result of M66",
     "G0 X#<_ini[a]b>": "1: word X: #<_ini[a]b> cannot be known while expanding: only the machine has it",
     "G0 X#1\nG5.1 X1 I1": "2: WORD: G5.1 (LinuxCNC): a spline: let the CAM program write G1, G2 and G3",
     "G0 X#1\nM104 S200": "2: WORD: M104 (RepRap): this is for 3D printers: leave it out",
-    "G0 E#1": "1: WORD: E0 (RepRap: for 3D printers)",
+    "G0 E#1": f"1: {GcodeError(36)}: E0 (RepRap: for 3D printers)",
 }  # fmt: skip
 
 

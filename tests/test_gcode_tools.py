@@ -112,7 +112,66 @@ def test_outputs_of_the_user(gcode: Gcode) -> None:
     assert acted("T5 M6 M62 P2") == [(c.PASSO_GCODE_CHANGE, 13, False), (c.PASSO_GCODE_OUTPUT, 13, False)]
     assert acted("M63 P0") == [(c.PASSO_GCODE_OUTPUT, 12, False)]
     assert acted("M65 P2 M2") == [(c.PASSO_GCODE_OUTPUT, 8, True), (c.PASSO_GCODE_END, 8, False)]
-    assert refused(gcode, "M62") == 28 and refused(gcode, "M62 P4") == 20 and refused(gcode, "M62 P-1") == 4
+    assert refused(gcode, "M62") == 28 and refused(gcode, "M62 P4") == 39 and refused(gcode, "M62 P-1") == 4
     assert refused(gcode, "M62 P1 M63 P1") in (21, 25) and refused(gcode, "M62 M64 P1") == 21
     planner().passo_gcode_reset(gcode.c)
     assert gcode.c.digital == 0
+
+
+def test_an_input(gcode: Gcode) -> None:
+    """M66 is at rest, before the motion of its line; L0, or none, only reads."""
+    c = planner()
+
+    def acted(line: str) -> list[tuple[int, ...]]:
+        gcode.execute(line)
+        return [(action.kind, action.input, action.wanted, action.microseconds) for action in gcode.actions()]
+
+    assert acted("M66 P1") == acted("M66 P1 L0") == [(c.PASSO_GCODE_INPUT, 1, 0, 0)]
+    moved = (c.PASSO_GCODE_LINE, 0, 0, 0)
+    assert acted("M66 P3 L4 Q.5 G0 X1") == [(c.PASSO_GCODE_INPUT, 3, 4, 500_000), moved]
+    assert acted("G4 P2 M66 L1 Q3")[0] == (c.PASSO_GCODE_INPUT, 2, 1, 3_000_000)
+    for line, number in {
+        "M66": 28, "M66 L0": 28, "M66 P1 L3": 28, "M66 P1 L3 Q0": 28, "M66 P7": 39, "M66 E0": 39,
+        "M66 P1 E0": 39, "M66 P1 L5 Q1": 20, "M66 P1 L-1": 4, "M66 P1 M62": 21, "M66 P1 Q1 R1": 36,
+    }.items():  # fmt: skip
+        assert refused(gcode, line) == number, line
+    with pytest.raises(GcodeError, match="no such input"):
+        Gcode(GcodeSettings(inputs=0)).execute("M66 P0")
+
+
+def test_the_power(gcode: Gcode) -> None:
+    """M67 with the lines that follow, M68 at rest; S, M3, M4, M5, the end and a reset take it back."""
+    full = 65535
+    gcode = Gcode(GcodeSettings(spindle_maximum=1000))
+
+    def power(line: str) -> list[tuple[int, bool]]:
+        gcode.execute(line)
+        return [(action.output & full, action.stops) for action in gcode.actions()]
+
+    assert power("M67 E0 Q50 G0 X1") == [(full // 2, False)] * 2
+    assert power("M68 E0 Q100") == [(full, True)] and power("M68 E0 Q100") == []
+    assert power("M67 E0 Q12.5") == [(full // 8, False)]
+    assert power("M62 P0 X2")[-1] == (full // 8, False)
+    for back, left in {"S500": 0, "M3": full // 2, "M4": full // 2, "M5": 0}.items():
+        power("M67 E0 Q80")
+        assert power(back)[-1][0] == left, back
+    power("M3 S500")
+    assert power("M67 E0 Q25")[-1] == (full // 4, False) and power("M2")[-1] == (0, False)
+    power("M67 E0 Q25")
+    planner().passo_gcode_reset(gcode.c)
+    assert power("X0 G0") == [(0, False)]
+    for line, number in {
+        "M67": 28, "M67 E0": 28, "M67 Q1": 28, "M67 E1 Q1": 39, "M68 E-1 Q1": 4, "M67 E0 Q-1": 4,
+        "E1": 36, "M67 E0 Q1 M68": 21, "M67 E0 Q1 P1": 36,
+    }.items():  # fmt: skip
+        assert refused(gcode, line) == number, line
+    with pytest.raises(GcodeError, match="no such input or output"):
+        Gcode(GcodeSettings(power=False)).execute("M68 E0 Q1")
+
+
+def test_p_and_q_of_an_output_are_not_those_of_the_path() -> None:
+    gcode = Gcode(GcodeSettings())
+    gcode.execute("G64 M67 E0 Q2")
+    assert gcode.c.tolerance == 0
+    gcode.execute("G64 P2")
+    assert gcode.c.tolerance > 0

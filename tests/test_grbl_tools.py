@@ -6,8 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from passo.grbl_setup import SettingsFile, machine_at
+from passo.grbl_setup import SettingsFile, core_for, machine_at
 from passo.machine_file import MachineFile, read_machine
+from passo.run import open_engine
 
 from tests.helpers.grbl_console import GrblConsole
 from tests.helpers.grbl_machine import MACHINE
@@ -252,3 +253,66 @@ def test_check_mode(session: GrblConsole) -> None:
     session.line("$C")
     session.run(0.3)
     assert levels(session) == 0 and "[T:" not in session.line("$#")
+
+
+def test_an_input(machine: MachineFile) -> None:
+    """M66 waits at rest, at most its time, and says what it has found; `!` stops the time."""
+    with open_engine("model", core_for(machine), machine.clock_hz) as engine:
+        session = GrblConsole(engine, machine)
+        session.line("$X")
+        check_input(session)
+
+
+def check_input(session: GrblConsole) -> None:
+    """P2 is the home input of Y."""
+    y = 2
+
+    def says(text: str, wanted: str, seconds: float) -> None:
+        began = session.engine.clock
+        assert session.line(text) == f"[MSG:M66:{wanted}]\nok"
+        took = (session.engine.clock - began) / session.grbl.machine.clock_hz
+        assert seconds <= took < seconds + 0.02, text
+
+    says("M66 P2", "0", 0)
+    says("M66 P2 L4 Q1", "0", 0)
+    for wanted in (1, 2, 3):
+        says(f"M66 P2 L{wanted} Q0.3", "-1", 0.3)
+    for wanted, level in ((1, 1), (4, 0), (3, 1), (2, 0)):
+        session.send(b"G1 X%d F6000\nM66 P2 L%d Q9\nG1 X0\n" % (wanted, wanted), 0.5)
+        assert session.fields("MPos")[0] == wanted and session.status()["state"] == "Run"
+        session.engine.set("home", y * level)
+        assert session.send(b"", 0.5) == f"[MSG:M66:{level}]\nok\nok"
+        assert session.fields("MPos")[0] == 0
+    session.engine.set("probe", 1)
+    session.run(0.01)
+    says("M66 P0 L3 Q1", "1", 0)
+    assert session.line("M66 P4") == session.line("M66 E0") == "error:39"
+    session.send(b"M66 P2 L3 Q0.5\n", 0.1)
+    assert session.send(b"!", 2) == "" and session.status()["state"].startswith("Hold")
+    assert session.send(b"~", 0.5) == "[MSG:M66:-1]\nok"
+    session.send(b"M66 P2 L3 Q9\nG1 X-9\n", 0.1)
+    session.send(b"\x18", 0.1)
+    session.line("$X")
+    says("M66 P2 L0", "0", 0)
+    assert session.fields("MPos")[0] == 0
+
+
+def test_the_power(session: GrblConsole) -> None:
+    """M67 with the line after it, M68 when the motion before has ended, M5 ends it: shares of the time."""
+    drain, kept = session.engine.drain, []
+
+    def watched() -> np.ndarray:
+        kept.append(drain())
+        return kept[-1]
+
+    session.engine.drain = watched
+    session.grbl.type(b"M67 E0 Q25\nG1 X-10 F6000\nM68 E0 Q75\nG1 X-20\nM5\nG1 X-30\n")
+    session.finish()
+    watched()
+    events = np.concatenate(kept)
+    begins, ends = (np.flatnonzero(np.diff(events["running"].astype(int)) == edge) + 1 for edge in (1, -1))
+    assert len(begins) == len(ends) == 2
+    at, on = np.diff(events["clock"].astype(float)), events["power"][:-1] & 1
+    shares = [on[a:b] @ at[a:b] / at[a:b].sum() for a, b in zip(begins, ends, strict=True)]
+    assert abs(shares[0] - 0.25) < 0.01 and 0.3 < shares[1] < 0.45
+    assert session.line("M67 E1 Q1").endswith("error:39")

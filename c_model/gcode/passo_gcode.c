@@ -34,7 +34,7 @@ static void clear_job(struct passo_gcode *gcode)
 	    job->end = false;
 	job->turns = job->drills = false;
 #ifndef PASSO_PLAIN_GCODE
-	job->settles = false;
+	job->settles = job->listens = false;
 #endif
 	job->probe = PASSO_GCODE_NONE;
 }
@@ -47,10 +47,11 @@ void passo_gcode_open(struct passo_gcode *gcode, const struct passo_gcode_settin
 
 void passo_gcode_configure(struct passo_gcode *gcode, const struct passo_gcode_settings *settings)
 {
-	const uint8_t axes = gcode->settings.axes;
+	const uint8_t axes = gcode->settings.axes, left_out = gcode->settings.left_out;
 
 	gcode->settings = *settings;
 	gcode->settings.axes = axes;
+	gcode->settings.left_out = left_out;
 }
 
 void passo_gcode_set_offsets(struct passo_gcode *gcode, const struct passo_gcode_offsets *offsets)
@@ -67,6 +68,7 @@ void passo_gcode_reset(struct passo_gcode *gcode)
 	gcode->flood = gcode->mist = false;
 #ifndef PASSO_PLAIN_GCODE
 	gcode->digital = 0;
+	gcode->power = PASSO_GCODE_POWER_OF_SPINDLE;
 #endif
 	gcode->tool_length = gcode->feed = gcode->spindle = 0;
 	gcode->tolerance = 0;
@@ -98,21 +100,26 @@ static void accept_coolant(struct passo_gcode *gcode, passo_gcode_command comman
 	gcode->flood = command == PASSO_GCODE_M(8) || (gcode->flood && command != PASSO_GCODE_M(9));
 }
 
-/* M62 and M64: on. M64 and M65: not with the motion. */
-static void accept_digital(struct passo_gcode *gcode, const struct passo_gcode_check *check)
+/* M62 and M64: on. M64, M65 and M68: not with the motion. The power is that of the last word: S and M3 to M5
+ * take it back. */
+static void accept_port(struct passo_gcode *gcode, const struct passo_gcode_check *check)
 {
 #ifdef PASSO_PLAIN_GCODE
 	(void)gcode, (void)check;
 #else
-	const passo_gcode_command command = check->block.command[PASSO_GCODE_DIGITAL];
+	const struct passo_gcode_block *block = &check->block;
+	const passo_gcode_command command = block->command[PASSO_GCODE_PORT];
 
-	if (command == PASSO_GCODE_NONE)
-		return;
+	if ((block->words & PASSO_GCODE_WORD('S')) || block->command[PASSO_GCODE_SPINDLE] != PASSO_GCODE_NONE)
+		gcode->power = PASSO_GCODE_POWER_OF_SPINDLE;
 	if (command == PASSO_GCODE_M(62) || command == PASSO_GCODE_M(64))
 		gcode->digital |= check->digital;
-	else
+	else if (command == PASSO_GCODE_M(63) || command == PASSO_GCODE_M(65))
 		gcode->digital &= (uint8_t)~check->digital;
-	gcode->job.settles = command >= PASSO_GCODE_M(64);
+	else if (command >= PASSO_GCODE_M(67))
+		gcode->power = check->power;
+	gcode->job.settles =
+	    command == PASSO_GCODE_M(64) || command == PASSO_GCODE_M(65) || command == PASSO_GCODE_M(68);
 #endif
 }
 
@@ -178,7 +185,7 @@ static void accept(struct passo_gcode *gcode, const struct passo_gcode_check *ch
 	for (unsigned group = 0; group < PASSO_GCODE_MODES; group++)
 		gcode->mode[group] = check->mode[group];
 	accept_coolant(gcode, block->command[PASSO_GCODE_COOLANT]);
-	accept_digital(gcode, check);
+	accept_port(gcode, check);
 	accept_command(gcode, check);
 	if (gcode->job.motion)
 		passo_gcode_copy(gcode, gcode->job.destination, gcode->position);
@@ -190,7 +197,8 @@ static void accept(struct passo_gcode *gcode, const struct passo_gcode_check *ch
 static enum passo_gcode_error begin(
     struct passo_gcode *gcode, struct passo_gcode_check *check, const char *text)
 {
-	const enum passo_gcode_error error = passo_gcode_parse(text, gcode->settings.axes, &check->block);
+	const uint32_t axis_words = passo_gcode_axis_words(gcode->settings.left_out, gcode->settings.axes);
+	const enum passo_gcode_error error = passo_gcode_parse(text, axis_words, &check->block);
 
 	clear_job(gcode);
 	check->gcode = gcode;
@@ -202,7 +210,7 @@ static enum passo_gcode_error begin(
 	check->drill = gcode->drill;
 	check->tool_length = gcode->tool_length;
 	check->system = check->entry = 0;
-	check->axis_words = check->block.words & passo_gcode_axis_words(gcode->settings.axes);
+	check->axis_words = check->block.words & axis_words;
 	for (unsigned group = 0; group < PASSO_GCODE_MODES; group++) {
 		const passo_gcode_command given = check->block.command[group];
 
@@ -234,8 +242,6 @@ enum passo_gcode_error passo_gcode_execute(struct passo_gcode *gcode, const char
 
 enum passo_gcode_error passo_gcode_jog(struct passo_gcode *gcode, const char *text)
 {
-	const uint32_t known =
-	    passo_gcode_axis_words(gcode->settings.axes) | PASSO_GCODE_WORD('F') | PASSO_GCODE_WORD('N');
 	struct passo_gcode_check check;
 	enum passo_gcode_error error = begin(gcode, &check, text);
 
@@ -247,7 +253,8 @@ enum passo_gcode_error passo_gcode_jog(struct passo_gcode *gcode, const char *te
 		if (error == PASSO_GCODE_OK && given != PASSO_GCODE_NONE && !allowed)
 			error = PASSO_GCODE_JOG;
 	}
-	if (error == PASSO_GCODE_OK && (check.block.words & ~known))
+	if (error == PASSO_GCODE_OK
+	    && (check.block.words & ~(check.axis_words | PASSO_GCODE_WORD('F') | PASSO_GCODE_WORD('N'))))
 		error = PASSO_GCODE_JOG;
 	if (error == PASSO_GCODE_OK && check.axis_words == 0)
 		error = PASSO_GCODE_NO_AXIS_WORDS;

@@ -35,11 +35,14 @@
 typedef int64_t passo_gcode_position[PASSO_GCODE_AXES_MAX];
 
 struct passo_gcode_settings {
-	uint8_t axes;             /* X, Y, Z, A, B, C: the first 1 .. PASSO_GCODE_AXES_MAX of them */
+	uint8_t axes;             /* 1 .. PASSO_GCODE_AXES_MAX */
 	uint32_t arc_tolerance;   /* nm, at least 1 */
 	uint32_t spindle_maximum; /* rpm at full power; 0: S has no effect */
 	bool laser;               /* M4: speed-proportional power, not reverse */
 	uint32_t spindle_minimum; /* rpm, minimum of a running spindle */
+	uint8_t left_out;         /* mask of axes of passo_gcode_block.h */
+	uint8_t inputs;           /* of M66: P is below it */
+	bool power;               /* there is the output of M67 and M68, E0 */
 };
 
 /* Offsets that survive a reset: stored by the caller, if at all. */
@@ -61,16 +64,28 @@ struct passo_gcode_offsets {
 #define PASSO_GCODE_OUTPUTS_DIGITAL                                                                          \
 	(PASSO_GCODE_OUTPUT_DIGITAL * ((UINT32_C(1) << PASSO_GCODE_DIGITALS) - 1u))
 #define PASSO_GCODE_OUTPUT_PROPORTIONAL (UINT32_C(1) << 24)
+#define PASSO_GCODE_POWER_FULL 65535u /* the power is in the lower half */
+#define PASSO_GCODE_POWER_OF_SPINDLE UINT32_MAX
+
+/* What M66 waits for: L. */
+enum passo_gcode_wanted {
+	PASSO_GCODE_WANTED_NOW, /* nothing: the level is read */
+	PASSO_GCODE_WANTED_RISE,
+	PASSO_GCODE_WANTED_FALL,
+	PASSO_GCODE_WANTED_HIGH,
+	PASSO_GCODE_WANTED_LOW
+};
 
 enum passo_gcode_kind {
 	PASSO_GCODE_LINE,
 	PASSO_GCODE_PROBE, /* to the target, until the probe triggers; `probe` is 382 .. 385 */
 	PASSO_GCODE_DWELL,
-	PASSO_GCODE_OUTPUT,  /* levels have changed; `stops`: now, M64 and M65 */
+	PASSO_GCODE_OUTPUT,  /* levels or power have changed; `stops`: now, M64, M65 and M68 */
 	PASSO_GCODE_PAUSE,   /* M0: wait for the operator after the preceding lines */
 	PASSO_GCODE_END,     /* M2, M30: of the program */
 	PASSO_GCODE_OFFSETS, /* struct passo_gcode_offsets has changed */
-	PASSO_GCODE_CHANGE   /* M6: a pause with spindle and coolant off, until passo_gcode_load() */
+	PASSO_GCODE_CHANGE,  /* M6: a pause with spindle and coolant off, until passo_gcode_load() */
+	PASSO_GCODE_INPUT    /* M66: at rest, until input `input` is as `wanted` or the time is over */
 };
 
 struct passo_gcode_action {
@@ -79,7 +94,8 @@ struct passo_gcode_action {
 	uint64_t feed;               /* UQ32.32 mm/s, or PASSO_PATH_RAPID */
 	uint64_t tolerance;          /* for passo_path_tolerance(), before the line is added */
 	bool stops;                  /* at the end of the line, or of the one before */
-	uint64_t microseconds;       /* of a dwell */
+	uint64_t microseconds;       /* of a dwell; most time of M66 */
+	uint8_t input, wanted;       /* P and L of M66 */
 	uint32_t output;
 	uint32_t line; /* N; 0: none */
 	passo_gcode_command probe;
@@ -93,6 +109,9 @@ struct passo_gcode_job {
 	bool drills;                                                  /* the motion is a cycle */
 #ifndef PASSO_PLAIN_GCODE
 	bool settles; /* the output changes at rest */
+	bool listens; /* M66 */
+	uint8_t input, wanted;
+	uint64_t timeout; /* us */
 #endif
 	passo_gcode_command probe; /* the motion is a probe; else PASSO_GCODE_NONE */
 	uint64_t microseconds;
@@ -112,6 +131,7 @@ struct passo_gcode {
 	bool flood, mist;
 #ifndef PASSO_PLAIN_GCODE
 	uint8_t digital; /* of M62 to M65: P0 is bit 0 */
+	uint32_t power;  /* of M67 and M68, or PASSO_GCODE_POWER_OF_SPINDLE */
 #endif
 	passo_gcode_position position;  /* programmed end, machine coordinates */
 	passo_gcode_position shift;     /* G92 */
@@ -130,7 +150,7 @@ struct passo_gcode {
 /* Power-up modes, position 0, no offsets. */
 void passo_gcode_open(struct passo_gcode *gcode, const struct passo_gcode_settings *settings);
 
-/* Changes the settings; only while not busy. The number of axes stays. */
+/* Changes the settings; only while not busy. The axes stay. */
 void passo_gcode_configure(struct passo_gcode *gcode, const struct passo_gcode_settings *settings);
 
 /* Changes the stored offsets; only while not busy. */

@@ -4,8 +4,6 @@
 #include "passo_gcode_private.h"
 #include "passo_math.h"
 
-#define POWER_FULL 65535u
-
 uint32_t passo_gcode_output(const struct passo_gcode *gcode)
 {
 	const uint32_t maximum = gcode->settings.spindle_maximum;
@@ -22,11 +20,13 @@ uint32_t passo_gcode_output(const struct passo_gcode *gcode)
 		    gcode->settings.laser ? PASSO_GCODE_OUTPUT_PROPORTIONAL : PASSO_GCODE_OUTPUT_REVERSE;
 
 		output = PASSO_GCODE_OUTPUT_SPINDLE;
-		output |= full > 0 ? (uint32_t)passo_mul_div(speed, POWER_FULL, full) : 0u;
+		output |= full > 0 ? (uint32_t)passo_mul_div(speed, PASSO_GCODE_POWER_FULL, full) : 0u;
 		output |= gcode->mode[PASSO_GCODE_SPINDLE] == PASSO_GCODE_M(4) ? reverse : 0u;
 	}
 #ifndef PASSO_PLAIN_GCODE
 	output |= gcode->digital * PASSO_GCODE_OUTPUT_DIGITAL;
+	if (gcode->power != PASSO_GCODE_POWER_OF_SPINDLE)
+		output = (output & ~PASSO_GCODE_POWER_FULL) | gcode->power;
 #endif
 	output |= gcode->flood ? PASSO_GCODE_OUTPUT_FLOOD : 0u;
 	return output | (gcode->mist ? PASSO_GCODE_OUTPUT_MIST : 0u);
@@ -42,14 +42,20 @@ static void end_program(struct passo_gcode *gcode)
 	for (unsigned i = 0; i < sizeof ENDING; i++)
 		gcode->mode[ENDING[i]] = PASSO_GCODE_POWER_UP[ENDING[i]];
 	gcode->flood = gcode->mist = false;
+#ifndef PASSO_PLAIN_GCODE
+	gcode->power = PASSO_GCODE_POWER_OF_SPINDLE;
+#endif
 }
 
 bool passo_gcode_is_busy(const struct passo_gcode *gcode)
 {
 	const struct passo_gcode_job *job = &gcode->job;
 
-	return (PASSO_GCODE_HAS_TOOLS && job->change) || job->output || job->dwell || job->offsets || job->via
-	    || job->motion || job->pause || job->end;
+#ifndef PASSO_PLAIN_GCODE
+	if (job->change || job->listens)
+		return true;
+#endif
+	return job->output || job->dwell || job->offsets || job->via || job->motion || job->pause || job->end;
 }
 
 /* Takes a part of the job, if it is there. */
@@ -124,6 +130,11 @@ bool passo_gcode_next(struct passo_gcode *gcode, struct passo_gcode_action *acti
 		action->kind = PASSO_GCODE_OUTPUT;
 #ifndef PASSO_PLAIN_GCODE
 		action->stops = job->settles;
+	} else if (take(&job->listens)) {
+		action->kind = PASSO_GCODE_INPUT;
+		action->input = job->input;
+		action->wanted = job->wanted;
+		action->microseconds = job->timeout;
 #endif
 	} else if (take(&job->dwell)) {
 		action->kind = PASSO_GCODE_DWELL;

@@ -85,10 +85,13 @@ static const struct code M_CODES[] = {
 #ifndef PASSO_PLAIN_GCODE
     {60, PASSO_GCODE_TOOL_CHANGE, 0},
     {610, PASSO_GCODE_TOOL_CHANGE, 0},
-    {620, PASSO_GCODE_DIGITAL, 0},
-    {630, PASSO_GCODE_DIGITAL, 0},
-    {640, PASSO_GCODE_DIGITAL, 0},
-    {650, PASSO_GCODE_DIGITAL, 0},
+    {620, PASSO_GCODE_PORT, 0},
+    {630, PASSO_GCODE_PORT, 0},
+    {640, PASSO_GCODE_PORT, 0},
+    {650, PASSO_GCODE_PORT, 0},
+    {660, PASSO_GCODE_PORT, 0},
+    {670, PASSO_GCODE_PORT, 0},
+    {680, PASSO_GCODE_PORT, 0},
 #endif
     {70, PASSO_GCODE_COOLANT, 0},
     {80, PASSO_GCODE_COOLANT, 0},
@@ -101,29 +104,43 @@ static const struct code M_CODES[] = {
 static const char AXIS_LETTERS[PASSO_GCODE_AXES_MAX + 1u] = "XYZABC";
 /* Those of values that every machine knows. */
 #ifdef PASSO_PLAIN_GCODE
-#define TOOL_WORDS 0u
+#define MORE_WORDS 0u
 #else
-#define TOOL_WORDS PASSO_GCODE_WORD('H')
+#define MORE_WORDS (PASSO_GCODE_WORD('E') | PASSO_GCODE_WORD('H'))
 #endif
-static const uint32_t VALUE_WORDS = TOOL_WORDS | PASSO_GCODE_WORD('F') | PASSO_GCODE_WORD('I')
+static const uint32_t VALUE_WORDS = MORE_WORDS | PASSO_GCODE_WORD('F') | PASSO_GCODE_WORD('I')
                                   | PASSO_GCODE_WORD('J') | PASSO_GCODE_WORD('K') | PASSO_GCODE_WORD('L')
                                   | PASSO_GCODE_WORD('N') | PASSO_GCODE_WORD('P') | PASSO_GCODE_WORD('Q')
                                   | PASSO_GCODE_WORD('R') | PASSO_GCODE_WORD('S') | PASSO_GCODE_WORD('T');
-static const uint32_t POSITIVE_WORDS = TOOL_WORDS | PASSO_GCODE_WORD('F') | PASSO_GCODE_WORD('N')
+static const uint32_t POSITIVE_WORDS = MORE_WORDS | PASSO_GCODE_WORD('F') | PASSO_GCODE_WORD('N')
                                      | PASSO_GCODE_WORD('P') | PASSO_GCODE_WORD('Q') | PASSO_GCODE_WORD('S')
                                      | PASSO_GCODE_WORD('T');
 
-char passo_gcode_axis_letter(unsigned axis)
+#ifdef PASSO_PLAIN_GCODE
+char passo_gcode_axis_letter(uint8_t left_out, unsigned axis)
 {
+	(void)left_out;
 	return AXIS_LETTERS[axis];
 }
+#else
+char passo_gcode_axis_letter(uint8_t left_out, unsigned axis)
+{
+	unsigned at = 0;
 
-uint32_t passo_gcode_axis_words(unsigned axes)
+	for (; at + 1u < PASSO_GCODE_AXES_MAX; at++) {
+		if (!(left_out >> at & 1u) && axis-- == 0)
+			break;
+	}
+	return AXIS_LETTERS[at];
+}
+#endif
+
+uint32_t passo_gcode_axis_words(uint8_t left_out, unsigned axes)
 {
 	uint32_t words = 0;
 
 	for (unsigned axis = 0; axis < axes; axis++)
-		words |= PASSO_GCODE_WORD(AXIS_LETTERS[axis]);
+		words |= PASSO_GCODE_WORD(passo_gcode_axis_letter(left_out, axis));
 	return words;
 }
 
@@ -219,10 +236,9 @@ static enum passo_gcode_error add_value(
 }
 
 /* The axis words are those of G49, as in grbl; without any, other commands may be in its line. */
-static enum passo_gcode_error mind_g49(struct passo_gcode_block *block, unsigned axes)
+static enum passo_gcode_error mind_g49(struct passo_gcode_block *block, uint32_t axis_words)
 {
-	if (block->command[PASSO_GCODE_TOOL_LENGTH] != PASSO_GCODE_G(49, 0)
-	    || !(block->words & passo_gcode_axis_words(axes)))
+	if (block->command[PASSO_GCODE_TOOL_LENGTH] != PASSO_GCODE_G(49, 0) || !(block->words & axis_words))
 		return PASSO_GCODE_OK;
 	if (block->takes_axes)
 		return PASSO_GCODE_TWO_COMMANDS;
@@ -230,9 +246,10 @@ static enum passo_gcode_error mind_g49(struct passo_gcode_block *block, unsigned
 	return PASSO_GCODE_OK;
 }
 
-enum passo_gcode_error passo_gcode_parse(const char *text, unsigned axes, struct passo_gcode_block *block)
+enum passo_gcode_error passo_gcode_parse(
+    const char *text, uint32_t axis_words, struct passo_gcode_block *block)
 {
-	const uint32_t known = VALUE_WORDS | passo_gcode_axis_words(axes);
+	const uint32_t known = VALUE_WORDS | axis_words;
 	enum passo_gcode_error error = PASSO_GCODE_OK;
 
 	*block = (struct passo_gcode_block){.words = 0};
@@ -257,5 +274,5 @@ enum passo_gcode_error passo_gcode_parse(const char *text, unsigned axes, struct
 		else
 			error = add_value(block, known, letter, value);
 	}
-	return error == PASSO_GCODE_OK ? mind_g49(block, axes) : error;
+	return error == PASSO_GCODE_OK ? mind_g49(block, axis_words) : error;
 }

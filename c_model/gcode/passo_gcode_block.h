@@ -3,8 +3,8 @@
  *
  * Numbers are exact in millionths: millimeters become nanometers, seconds microseconds.
  *
- * PASSO_PLAIN_GCODE, for the flash of a small controller: no tool change, no tool table, no outputs of the
- * user; their words are refused.
+ * PASSO_PLAIN_GCODE, for the flash of a small controller: no tool change, no tool table, no inputs and
+ * outputs of the user; their words are refused. No axis is left out.
  */
 #ifndef PASSO_GCODE_BLOCK_H
 #define PASSO_GCODE_BLOCK_H
@@ -14,7 +14,8 @@
 
 #include "passo_gcode_error.h"
 
-/* Axes are X Y Z A B C, in this order. */
+/* Axes are X Y Z A B C, in this order. Those that a machine leaves out are a mask, bit 0 X: of X Y Z only the
+ * last ones. */
 #define PASSO_GCODE_AXES_MAX 6u
 
 #define PASSO_GCODE_MILLION 1000000
@@ -38,7 +39,7 @@ enum passo_gcode_group {
 	PASSO_GCODE_PROGRAM,      /* M0 M1 M2 M30 */
 	PASSO_GCODE_TOOL_CHANGE,  /* M6 M61 */
 #ifndef PASSO_PLAIN_GCODE
-	PASSO_GCODE_DIGITAL, /* M62-65 */
+	PASSO_GCODE_PORT, /* M62-68 */
 #endif
 	PASSO_GCODE_GROUPS
 };
@@ -60,16 +61,17 @@ struct passo_gcode_block {
 	int64_t value[26];                               /* of a letter, in millionths */
 };
 
-/* Letter of an axis, and the words of the first `axes` of them. */
-char passo_gcode_axis_letter(unsigned axis);
-uint32_t passo_gcode_axis_words(unsigned axes);
+/* Letter of an axis of a machine, and the words of its first `axes` ones. */
+char passo_gcode_axis_letter(uint8_t left_out, unsigned axis);
+uint32_t passo_gcode_axis_words(uint8_t left_out, unsigned axes);
 
 /* Reads a number: sign, digits and at most one point, below 10^9; rounded to millionths. Advances *text
  * past it. False: no number. */
 bool passo_gcode_number(const char **text, int64_t *millionths);
 
-/* Reads the words of a line (passo_gcode_line.h) for a machine with `axes` axes. Errors: LETTER, NUMBER,
- * NEGATIVE, UNSUPPORTED, MODAL_GROUP, NOT_INTEGER, TWO_COMMANDS, REPEATED. */
-enum passo_gcode_error passo_gcode_parse(const char *text, unsigned axes, struct passo_gcode_block *block);
+/* Reads the words of a line (passo_gcode_line.h) for a machine with these axis words. Errors: LETTER,
+ * NUMBER, NEGATIVE, UNSUPPORTED, MODAL_GROUP, NOT_INTEGER, TWO_COMMANDS, REPEATED. */
+enum passo_gcode_error passo_gcode_parse(
+    const char *text, uint32_t axis_words, struct passo_gcode_block *block);
 
 #endif

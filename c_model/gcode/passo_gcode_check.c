@@ -2,6 +2,7 @@
  * Checks of all words but those of a motion, in the order in which grbl names the errors.
  */
 #include "passo_gcode_private.h"
+#include "passo_math.h"
 
 #define TOOL_MAX 255
 #define LINE_NUMBER_MAX 9999999
@@ -39,12 +40,24 @@ int64_t passo_gcode_length_of(const struct passo_gcode_check *check, char letter
 
 bool passo_gcode_has_axis(const struct passo_gcode_check *check, unsigned axis)
 {
-	return (check->axis_words & PASSO_GCODE_WORD(passo_gcode_axis_letter(axis))) != 0;
+	return (check->axis_words
+	           & PASSO_GCODE_WORD(passo_gcode_axis_letter(check->gcode->settings.left_out, axis)))
+	    != 0;
+}
+
+bool passo_gcode_is_linear(const struct passo_gcode *gcode, unsigned axis)
+{
+#ifdef PASSO_PLAIN_GCODE
+	(void)gcode, (void)axis;
+	return true;
+#else
+	return !(gcode->settings.left_out >> axis & 1u);
+#endif
 }
 
 int64_t passo_gcode_axis_value(const struct passo_gcode_check *check, unsigned axis)
 {
-	const char letter = passo_gcode_axis_letter(axis);
+	const char letter = passo_gcode_axis_letter(check->gcode->settings.left_out, axis);
 
 	return letter >= 'X' ? passo_gcode_length_of(check, letter) : value_of(check, letter);
 }
@@ -105,20 +118,63 @@ static enum passo_gcode_error check_table_length(struct passo_gcode_check *check
 	return PASSO_GCODE_OK;
 }
 
-static enum passo_gcode_error check_digital(struct passo_gcode_check *check)
+static enum passo_gcode_error check_port(struct passo_gcode_check *check)
 {
 	(void)check;
 	return PASSO_GCODE_OK;
 }
 #else
-static enum passo_gcode_error check_digital(struct passo_gcode_check *check)
+/* M66: P is the input, L what is waited for, Q the most seconds. There is no analog one, E. */
+static enum passo_gcode_error check_input(struct passo_gcode_check *check)
 {
-	if (check->block.command[PASSO_GCODE_DIGITAL] == PASSO_GCODE_NONE)
+	struct passo_gcode_job *job = check->job;
+	const bool analog = passo_gcode_take(check, 'E'), waits = passo_gcode_take(check, 'L');
+	const int64_t wanted = waits ? whole_of(check, 'L') : 0;
+
+	if (!passo_gcode_take(check, 'P') && !analog)
+		return PASSO_GCODE_NO_VALUE;
+	if (analog || whole_of(check, 'P') >= check->gcode->settings.inputs)
+		return PASSO_GCODE_NO_PORT;
+	if (waits && value_of(check, 'L') < 0)
+		return PASSO_GCODE_NEGATIVE;
+	if (wanted > PASSO_GCODE_WANTED_LOW)
+		return PASSO_GCODE_UNSUPPORTED;
+	job->timeout = passo_gcode_take(check, 'Q') ? (uint64_t)value_of(check, 'Q') : 0;
+	if (wanted != PASSO_GCODE_WANTED_NOW && job->timeout == 0)
+		return PASSO_GCODE_NO_VALUE;
+	job->input = (uint8_t)whole_of(check, 'P');
+	job->wanted = (uint8_t)wanted;
+	job->listens = true;
+	return PASSO_GCODE_OK;
+}
+
+/* M67, M68: E is the output, Q its share of full power in percent. */
+static enum passo_gcode_error check_power(struct passo_gcode_check *check)
+{
+	const bool complete = passo_gcode_take(check, 'E') && passo_gcode_take(check, 'Q');
+	const uint64_t full = 100 * (uint64_t)PASSO_GCODE_MILLION, share = (uint64_t)value_of(check, 'Q');
+
+	if (!complete)
+		return PASSO_GCODE_NO_VALUE;
+	check->power = (uint32_t)passo_mul_div(share < full ? share : full, PASSO_GCODE_POWER_FULL, full);
+	return whole_of(check, 'E') > 0 || !check->gcode->settings.power ? PASSO_GCODE_NO_PORT
+	                                                                 : PASSO_GCODE_OK;
+}
+
+static enum passo_gcode_error check_port(struct passo_gcode_check *check)
+{
+	const passo_gcode_command command = check->block.command[PASSO_GCODE_PORT];
+
+	if (command == PASSO_GCODE_NONE)
 		return PASSO_GCODE_OK;
+	if (command == PASSO_GCODE_M(66))
+		return check_input(check);
+	if (command >= PASSO_GCODE_M(67))
+		return check_power(check);
 	if (!passo_gcode_take(check, 'P'))
 		return PASSO_GCODE_NO_VALUE;
 	if (whole_of(check, 'P') >= PASSO_GCODE_DIGITALS)
-		return PASSO_GCODE_UNSUPPORTED;
+		return PASSO_GCODE_NO_PORT;
 	check->digital = (uint8_t)(1u << whole_of(check, 'P'));
 	return PASSO_GCODE_OK;
 }
@@ -169,7 +225,7 @@ static enum passo_gcode_error check_tool(struct passo_gcode_check *check)
 		return PASSO_GCODE_TOOL;
 	enum passo_gcode_error error = check_change(check);
 	if (error == PASSO_GCODE_OK)
-		error = check_digital(check);
+		error = check_port(check);
 	check->tool_length = length == PASSO_GCODE_G(49, 0) ? 0 : check->gcode->tool_length;
 	if (length == PASSO_GCODE_G(43, 1)) {
 		if (check->axis_words != PASSO_GCODE_WORD('Z'))
@@ -185,7 +241,7 @@ static enum passo_gcode_error check_tool(struct passo_gcode_check *check)
 
 static int64_t tool_offset(const struct passo_gcode_check *check, unsigned axis)
 {
-	return axis == TOOL_AXIS ? check->tool_length : 0;
+	return axis == TOOL_AXIS && passo_gcode_is_linear(check->gcode, axis) ? check->tool_length : 0;
 }
 
 int64_t passo_gcode_offset_of(const struct passo_gcode_check *check, unsigned axis)
@@ -280,20 +336,29 @@ static enum passo_gcode_error check_return(struct passo_gcode_check *check, cons
 	return error;
 }
 
-/* G61, G61.1: every point is passed. G64: the tolerance is Q, or P alone, unless P is that of G4, G10 or a
- * cycle; without them it is 0, the path's own. */
+/* Whether P and Q of a line are those of a cycle, or of M66 to M68. */
+static bool has_other_values(const struct passo_gcode_check *check)
+{
+#ifndef PASSO_PLAIN_GCODE
+	if (check->block.command[PASSO_GCODE_PORT] >= PASSO_GCODE_M(66))
+		return true;
+#endif
+	return check->moves && passo_gcode_is_cycle(check->mode[PASSO_GCODE_MOTION]);
+}
+
+/* G61, G61.1: every point is passed. G64: the tolerance is Q, or P alone, unless P is that of G4, G10 or
+ * another command; without them it is 0, the path's own. */
 static enum passo_gcode_error check_path(struct passo_gcode_check *check)
 {
 	const passo_gcode_command command = check->block.command[PASSO_GCODE_COMMAND];
 	const passo_gcode_command path = check->block.command[PASSO_GCODE_PATH];
-	const passo_gcode_command motion = check->mode[PASSO_GCODE_MOTION];
 	char letter = '\0';
 
 	check->tolerance = check->gcode->tolerance;
 	if (path == PASSO_GCODE_NONE)
 		return PASSO_GCODE_OK;
 	check->tolerance = path == PASSO_GCODE_G(64, 0) ? 0 : PASSO_PATH_UNMERGED;
-	if (path != PASSO_GCODE_G(64, 0) || (check->moves && passo_gcode_is_cycle(motion)))
+	if (path != PASSO_GCODE_G(64, 0) || has_other_values(check))
 		return PASSO_GCODE_OK;
 	if (command != PASSO_GCODE_G(4, 0) && command != PASSO_GCODE_G(10, 0) && passo_gcode_take(check, 'P'))
 		letter = 'P';

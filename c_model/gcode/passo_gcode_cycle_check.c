@@ -27,8 +27,7 @@ static enum passo_gcode_error check_words(struct passo_gcode_check *check, struc
 	const bool dwells = cycle->kind == PASSO_GCODE_G(82, 0) || cycle->kind == PASSO_GCODE_G(86, 0)
 	                 || cycle->kind == PASSO_GCODE_G(89, 0);
 	struct passo_gcode_drill *drill = &check->drill;
-	enum passo_gcode_error error =
-	    keep(check, passo_gcode_axis_letter(cycle->axis), kept, &drill->bottom);
+	enum passo_gcode_error error = keep(check, (char)('X' + cycle->axis), kept, &drill->bottom);
 
 	if (error == PASSO_GCODE_OK)
 		error = keep(check, 'R', kept, &drill->level);
@@ -120,12 +119,12 @@ enum passo_gcode_error passo_gcode_check_cycle(struct passo_gcode_check *check)
 	    .axis = (uint8_t)(CYCLE_AXES - plane.first - plane.second),
 	    .plane = plane,
 	};
-	if (check->gcode->settings.axes < CYCLE_AXES
+	if (check->gcode->settings.axes < CYCLE_AXES || !passo_gcode_is_linear(check->gcode, CYCLE_AXES - 1u)
 	    || check->mode[PASSO_GCODE_FEED_MODE] != PASSO_GCODE_G(94, 0))
 		return PASSO_GCODE_UNSUPPORTED;
 	if (check->axis_words == 0)
 		return PASSO_GCODE_NO_AXIS_WORDS;
-	if (check->axis_words & ~passo_gcode_axis_words(CYCLE_AXES))
+	if (check->axis_words & ~passo_gcode_axis_words(0, CYCLE_AXES))
 		return PASSO_GCODE_UNUSED;
 	passo_gcode_copy(check->gcode, check->gcode->position, cycle->at);
 	error = check_words(check, cycle);

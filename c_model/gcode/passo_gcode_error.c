@@ -74,6 +74,8 @@ const char *passo_gcode_error_text(enum passo_gcode_error error)
 		return "tool lengths are those of Z alone";
 	case PASSO_GCODE_TOOL_LENGTH_UNKNOWN:
 		return "no tool length could be measured";
+	case PASSO_GCODE_NO_PORT:
+		return "the machine has no such input or output";
 	case PASSO_GCODE_TOOL:
 		return "tool number above 255, or not in the tool table";
 	}

@@ -103,6 +103,9 @@ static enum passo_gcode_error check_arc(struct passo_gcode_check *check)
 		arc->start[axis] = check->gcode->position[axis];
 		arc->target[axis] = check->job->destination[axis];
 	}
+	if (!passo_gcode_is_linear(check->gcode, arc->plane.first)
+	    || !passo_gcode_is_linear(check->gcode, arc->plane.second))
+		return PASSO_GCODE_UNSUPPORTED;
 	const enum passo_gcode_error error = find_center(check, arc, &offset);
 	if (error != PASSO_GCODE_OK)
 		return error;

@@ -22,6 +22,7 @@ struct passo_gcode_check {
 	uint8_t loaded;      /* the tool in the spindle */
 #ifndef PASSO_PLAIN_GCODE
 	uint8_t digital; /* the output of M62 to M65, as a bit */
+	uint32_t power;  /* of M67 and M68 */
 #endif
 	struct passo_gcode_drill drill;
 	unsigned system;          /* that is set by G10 L2, L20 */
@@ -38,6 +39,9 @@ void passo_gcode_copy(const struct passo_gcode *gcode, const int64_t *from, int6
 bool passo_gcode_take(struct passo_gcode_check *check, char letter);
 /* Value of a word in nanometers, with the active units. */
 int64_t passo_gcode_length_of(const struct passo_gcode_check *check, char letter);
+/* Whether an axis of the machine is X, Y or Z, as its place of 0 to 2 says; a place without an axis is free.
+ */
+bool passo_gcode_is_linear(const struct passo_gcode *gcode, unsigned axis);
 bool passo_gcode_has_axis(const struct passo_gcode_check *check, unsigned axis);
 int64_t passo_gcode_axis_value(const struct passo_gcode_check *check, unsigned axis);
 bool passo_gcode_in_range(int64_t nanometres);

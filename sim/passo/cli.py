@@ -169,6 +169,7 @@ def _run(options: argparse.Namespace) -> int:
             options.waves,
             options.look_ahead,
             part_options.lines_of(options),
+            options.inputs,
         )
         return OK if run_part(options.moves, asked) else FAILED
     from passo.run_command import Wanted, run_file
@@ -190,6 +191,7 @@ def _preview(options: argparse.Namespace) -> int:
         options.out,
         options.look_ahead,
         part_options.lines_of(options),
+        options.inputs,
     )
     return OK if done else FAILED
 

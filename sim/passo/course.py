@@ -5,7 +5,6 @@ from functools import cached_property
 
 import numpy as np
 
-from passo.gcode import AXIS_LETTERS
 from passo.native import planner
 from passo.plan import Q48
 from passo.preview import Planned
@@ -162,7 +161,7 @@ class Course:
     def extent(self) -> dict[str, tuple[float, float]]:
         """Lowest and highest place of each axis."""
         lows, highs = self.points.min(axis=0).tolist(), self.points.max(axis=0).tolist()
-        return dict(zip(AXIS_LETTERS, zip(lows, highs, strict=True), strict=False))
+        return dict(zip(self.machine.letters, zip(lows, highs, strict=True), strict=False))
 
     @cached_property
     def line_seconds(self) -> np.ndarray:
@@ -179,7 +178,7 @@ class Course:
 
     def levels(self) -> list[dict[str, float]]:
         """The same at a feed of each level of Z, the highest first; lines that change Z are of none."""
-        if self.points.shape[1] < 3:
+        if "Z" not in self.machine.letters:
             return []
         z, feed = self.points[:, 2], ~self.planned.lines["rapid"]
         level = np.round((z[1:] + z[:-1]) / 2 / LEVEL).astype(int)

@@ -6,6 +6,23 @@ from pathlib import Path
 from typing import Any
 
 TOOLS = "for G41, G42 and G43: tool table of LinuxCNC, in mm"
+INPUTS_MOST = 9  # the probe, and the home inputs of eight motors
+INPUTS = "of M66: those that are high, such as 0,2; the others are low"
+
+
+def add_inputs(parser: argparse.ArgumentParser) -> None:
+    """The option `--inputs`."""
+    parser.add_argument("--inputs", type=_levels, metavar="P,P", help=INPUTS)
+
+
+def _levels(text: str) -> int:
+    try:
+        numbers = [int(number) for number in text.split(",") if number]
+    except ValueError:
+        numbers = [INPUTS_MOST]
+    if not all(0 <= number < INPUTS_MOST for number in numbers):
+        raise argparse.ArgumentTypeError(f"must be numbers of inputs with commas between them, not '{text}'")
+    return sum(1 << number for number in set(numbers))
 
 
 def add(
@@ -29,6 +46,7 @@ def add(
         parser.add_argument("-o", "--out", type=Path, metavar="FILE", help="write to a file")
         parser.add_argument("--machine", type=Path, metavar="MACHINE.toml", help="its axes (default: six)")
         parser.add_argument("--tools", type=Path, metavar="TOOLS.tbl", help=TOOLS)
+        add_inputs(parser)
         parser.add_argument("--at-zero", action="store_true", help="the machine begins at 0, without offsets")
         parser.add_argument("--numbers", action="store_true", help="comments with the lines of the original")
     return expand, height_map

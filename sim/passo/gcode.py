@@ -10,6 +10,7 @@ from passo.native import ffi, planner
 
 NANOMETERS = 1_000_000  # per millimeter
 AXIS_LETTERS = "XYZABC"
+LINEAR = "XYZ"
 
 
 class GcodeError(Failure):
@@ -28,11 +29,42 @@ class GcodeSettings:
     axes: int = 3
     arc_tolerance: float = 0.002  # mm
     spindle_maximum: int = 0  # rpm
+    letters: str = ""  # of the axes; none: the first ones of AXIS_LETTERS
+    inputs: int = 1 + len(AXIS_LETTERS)  # of M66
+    power: bool = True  # there is the output of M67 and M68
+    # That M66 reads in a simulation, P0 is bit 0. None: 0, and `passo expand` does not know them.
+    levels: int | None = None
+
+    @property
+    def axis_letters(self) -> str:
+        """A letter for each axis."""
+        return self.letters or AXIS_LETTERS[: self.axes]
+
+    @property
+    def left_out(self) -> int:
+        """A bit for each of AXIS_LETTERS before the last axis that the machine leaves out."""
+        letters = self.axis_letters
+        before = AXIS_LETTERS[: AXIS_LETTERS.index(letters[-1])]
+        return sum(1 << at for at, letter in enumerate(before) if letter not in letters)
+
+    def simulated_inputs(self) -> Any:
+        """The `inputs` of a `struct passo_program_settings`; they must live as long as the program."""
+        return ffi().new("uint16_t *", self.levels or 0)
 
     def struct(self) -> Any:
         """The `struct passo_gcode_settings`."""
         tolerance = max(1, round(self.arc_tolerance * NANOMETERS))
-        return ffi().new("struct passo_gcode_settings *", (self.axes, tolerance, self.spindle_maximum, False))
+        return ffi().new(
+            "struct passo_gcode_settings *",
+            {
+                "axes": self.axes,
+                "arc_tolerance": tolerance,
+                "spindle_maximum": self.spindle_maximum,
+                "left_out": self.left_out,
+                "inputs": self.inputs,
+                "power": self.power,
+            },
+        )
 
 
 def set_tool_lengths(gcode: Any, lengths: Mapping[int, float]) -> None:

@@ -21,7 +21,6 @@ from passo_fpga.boards import board
 from passo_fpga.generate import generate
 
 from passo.failure import BadInputError, Failure
-from passo.gcode import AXIS_LETTERS
 from passo.grbl import Grbl
 from passo.grbl_setup import core_for
 from passo.machine_file import MachineFile, read_machine
@@ -154,7 +153,10 @@ def all_inputs(machine: MachineFile) -> list[Input]:
     }
     found = [
         Input(
-            switch, machine.bits(switch, axis), f"{AXIS_LETTERS[axis]}: {names[switch]}", AXIS_LETTERS[axis]
+            switch,
+            machine.bits(switch, axis),
+            f"{machine.letters[axis]}: {names[switch]}",
+            machine.letters[axis],
         )
         for axis, end in enumerate(machine.ends)
         for switch in dict.fromkeys(end.switches)
@@ -250,14 +252,14 @@ class _Check:
             self.tell(f"blinking: {name}")
             for _ in range(BLINK_COUNT):
                 for line, way in ((on, step), (off, -step)):
-                    self.line(f"{line} G91 G1 {AXIS_LETTERS[0]}{way:.6f} F{FEED}")
+                    self.line(f"{line} G91 G1 {self.machine.letters[0]}{way:.6f} F{FEED}")
                     self.port.read(BLINK)
         self._rest()
 
     def motors(self) -> None:
         """One step of each motor, and back."""
         for axis, limits in enumerate(self.machine.settings.axes):
-            letter, step = AXIS_LETTERS[axis], 1 / float(limits.steps_per_mm)
+            letter, step = self.machine.letters[axis], 1 / float(limits.steps_per_mm)
             for sign, way in ((1, "forth"), (-1, "back")):
                 self.tell(f"one step of {letter}, {way}")
                 before = self._position(axis)

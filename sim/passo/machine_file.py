@@ -115,11 +115,16 @@ class MachineFile:
     kinematics: str = "cartesian"
 
     @property
+    def letters(self) -> str:
+        """Of the axes."""
+        return self.gcode.axis_letters
+
+    @property
     def motors(self) -> list[str]:
         """Names of the motors, in the order of the core: X, Y, Z, Y2, or X+Y, X-Y, Z."""
         rows, names, count = self.settings.motors.map(len(self.ends)), [], dict.fromkeys(AXIS_LETTERS, 0)
         for row in rows:
-            moved = [(AXIS_LETTERS[axis], "-" if part < 0 else "+") for axis, part in enumerate(row) if part]
+            moved = [(self.letters[axis], "-" if part < 0 else "+") for axis, part in enumerate(row) if part]
             name = "".join(sign + letter for letter, sign in moved).removeprefix("+")
             if len(moved) == 1:
                 count[name] += 1
@@ -131,7 +136,7 @@ class MachineFile:
     def limited(self) -> list[str]:
         """Names of what has limits: the axes, and the motors that move two of them."""
         axes = len(self.ends)
-        return [*AXIS_LETTERS[:axes], *np.array(self.motors)[self.settings.motors.mixed_of(axes)].tolist()]
+        return [*self.letters, *np.array(self.motors)[self.settings.motors.mixed_of(axes)].tolist()]
 
     @property
     def squared(self) -> list[int]:
@@ -212,22 +217,21 @@ def _machine(path: Path, data: Table) -> MachineFile:
         raise BadValueError(f"there are {len(tables)} axes; must be 1 to {len(AXIS_LETTERS)}: [[axis]]")
     profile = read_word(data, "profile", PROFILES) if "profile" in data else "linear"
     axes = tuple(
-        within(f"axis {number}", lambda number=number, table=table: _axis(table, AXIS_LETTERS[number - 1]))
-        for number, table in enumerate(tables, 1)
+        within(f"axis {number}", lambda table=table: _axis(table)) for number, table in enumerate(tables, 1)
     )
+    letters = _letters(tables)
     for number, axis in enumerate(axes, 1):
         if profile == "jerk" and not axis.jerk:
             raise BadValueError(f'axis {number}: profile = "jerk" needs its jerk in mm/s^3')
     ends = tuple(
         within(f"axis {number}", lambda table=table: _ends(table)) for number, table in enumerate(tables, 1)
     )
-    kinematics, motors = _motors(data, axes, ends)
+    kinematics, motors = _motors(data, letters, axes, ends)
     switches = _switches(data)
     _check_squared(axes, ends, switches)
     spindle = read_positive(data, "spindle_maximum") if "spindle_maximum" in data else 0
-    board, clock_hz = _board(
-        data, wanted_hz, ends, len(motors.map(len(axes))), _parts(ends, switches, spindle)
-    )
+    parts = _parts(ends, switches, spindle)
+    board, clock_hz = _board(data, wanted_hz, ends, len(motors.map(len(axes))), parts)
     timing = within("pins", lambda: read_pins(pins, clock_hz, (ENABLE_INVERTED,)))
     deviation = _number(data, "junction_deviation", JUNCTION_DEVIATION)
     settings = PathSettings(axes, clock_hz, junction_deviation=deviation, profile=profile, motors=motors)
@@ -242,7 +246,14 @@ def _machine(path: Path, data: Table) -> MachineFile:
     return MachineFile(
         path,
         settings,
-        GcodeSettings(len(axes), tolerance, spindle),
+        GcodeSettings(
+            len(axes),
+            tolerance,
+            spindle,
+            letters,
+            inputs=1 + len(motors.map(len(axes))) if "inputs" in parts else 0,
+            power="outputs" in parts,
+        ),
         timing,
         ends,
         switches,
@@ -288,14 +299,16 @@ def _check_gantry(axis: PathAxis, end: AxisEnds, switches: Switches) -> None:
         raise BadValueError(f"home: speed needs {stop:g} mm to stop; must be less than half of racking")
 
 
-def _motors(data: Table, axes: Sequence[PathAxis], ends: Sequence[AxisEnds]) -> tuple[str, Motors]:
+def _motors(
+    data: Table, letters: str, axes: Sequence[PathAxis], ends: Sequence[AxisEnds]
+) -> tuple[str, Motors]:
     """The kinematics and the map: an axis and its motor in order, then the further motors of the axes."""
     kinematics = read_word(data, "kinematics", tuple(KINEMATICS)) if "kinematics" in data else "cartesian"
     shared, rows = KINEMATICS[kinematics], np.eye(len(axes), dtype=int)
     table = read_subtable(data, "motors")
     within("motors", lambda: check_known(table, MOTOR_KEYS))
     if shared:
-        _check_shared(kinematics, shared, axes, ends)
+        _check_shared(kinematics, shared, letters, axes, ends)
         one, other = shared
         rows[one, other], rows[other, one], rows[other, other] = 1, 1, -1
     elif table:
@@ -316,10 +329,14 @@ def _motors(data: Table, axes: Sequence[PathAxis], ends: Sequence[AxisEnds]) -> 
 
 
 def _check_shared(
-    kinematics: str, shared: Sequence[int], axes: Sequence[PathAxis], ends: Sequence[AxisEnds]
+    kinematics: str,
+    shared: Sequence[int],
+    given: str,
+    axes: Sequence[PathAxis],
+    ends: Sequence[AxisEnds],
 ) -> None:
     """What contradicts two axes that share two motors."""
-    if len(axes) <= max(shared):
+    if AXIS_LETTERS[max(shared)] not in given:
         raise BadValueError(f'kinematics = "{kinematics}" needs an axis {AXIS_LETTERS[max(shared)]}')
     one, other = (axes[axis].steps_per_mm for axis in shared)
     letters = " and ".join(AXIS_LETTERS[axis] for axis in shared)
@@ -512,11 +529,26 @@ def _number(table: Table, key: str, default: float) -> float:
     return float(read_number(table, key)) if key in table else default
 
 
-def _axis(table: Table, letter: str) -> PathAxis:
+def _letters(tables: Sequence[Table]) -> str:
+    """A letter for each axis; without a name it is the one that follows."""
+    letters = ""
+    for number, table in enumerate(tables, 1):
+        left = AXIS_LETTERS[AXIS_LETTERS.index(letters[-1]) + 1 :] if letters else AXIS_LETTERS
+        allowed = left[:1] + left[1:].replace("Y", "").replace("Z", "")
+        name = table.get("name", left[:1])
+        if not isinstance(name, str) or len(name) != 1 or name not in allowed:
+            named = " or ".join(", ".join(f'"{letter}"' for letter in allowed).rsplit(", ", 1))
+            raise BadValueError(
+                f"axis {number}: name must be {named or 'left out, C is the last one'}, not {shown(name)}: "
+                "axes are X, Y, Z, A, B, C in order; "
+                "A, B, C may be left out, of X, Y, Z the last ones"
+            )
+        letters += name
+    return letters
+
+
+def _axis(table: Table) -> PathAxis:
     check_known(table, AXIS_KEYS)
-    name = table.get("name", letter)
-    if name != letter:
-        raise BadValueError(f'name must be "{letter}", not {shown(name)}: axes are X, Y, Z, A, B, C in order')
     limits = {}
     for key in ("steps_per_mm", "speed", "acceleration"):
         limits[key] = read_number(table, key)

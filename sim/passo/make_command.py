@@ -21,7 +21,6 @@ from passo_stm32.grbl_board import LARGE_IMAGE, SMALL_IMAGE
 from passo.console import stages
 from passo.drives import drives
 from passo.failure import BadInputError, Failure
-from passo.gcode import AXIS_LETTERS
 from passo.grbl_setup import MILLION, default_settings, encoders_of, setting_counts
 from passo.machine_file import CHIPS, MOTOR_KEYS, MachineFile, read_machine
 from passo.machine_sheet import Sheet, Wire, draw, page
@@ -113,6 +112,11 @@ def _check_firmware(machine: MachineFile) -> None:
         )
     if machine.encoders and chip != LARGE:
         raise BadInputError(f'{machine.path}: the firmware for {chip} has no encoders, chip = "{LARGE}" has')
+    if machine.gcode.left_out and chip != LARGE:
+        raise BadInputError(
+            f"{machine.path}: the axes are {' '.join(machine.letters)}; "
+            f'the firmware for {chip} leaves out none before the last one, chip = "{LARGE}" does'
+        )
     if any(float(getattr(machine.settings.motors.mixed, key)) % 1 for key in MOTOR_KEYS):
         raise BadInputError(f"{machine.path}: motors: the firmware takes whole numbers")
     if axes > CHIP_AXES[chip]:
@@ -123,7 +127,7 @@ def _check_firmware(machine: MachineFile) -> None:
             f"{machine.path}: there are limits of {', '.join(machine.limited)}; "
             f"the firmware has room for {CHIP_AXES[chip]}"
         )
-    for letter, axis in zip(AXIS_LETTERS, machine.settings.axes, strict=False):
+    for letter, axis in zip(machine.letters, machine.settings.axes, strict=True):
         for key in ("jump", "jerk"):
             if getattr(axis, key) and key != profile:
                 raise BadInputError(f"{machine.path}: axis {letter}: {key} is no setting of the firmware")
@@ -204,7 +208,7 @@ def _end(machine: MachineFile, chosen: Board, host: dict[str, str], name: str, i
             if machine.mask(port) >> index & 1 and (port == name or chosen.shared)
         ]
         axis = next(axis for axis in range(len(machine.ends)) if index in machine.motors_of(axis))
-        return "".join(f"{AXIS_LETTERS[axis]}: {SWITCH_PORTS[port]}" for port in served)
+        return "".join(f"{machine.letters[axis]}: {SWITCH_PORTS[port]}" for port in served)
     if name in ENCODER_PORTS:
         return f"encoder {machine.motors[index]}: {ENCODER_PORTS[name]}" if index in machine.encoders else ""
     if name == "probe":
@@ -233,7 +237,7 @@ def _summary(machine: MachineFile, chosen: Board) -> Iterator[str]:
         yield "         EN is high from power-up on: the drives hold before the firmware starts"
     most = machine.clock_hz / (2 * longest["STEP"])
     for axis_number, (axis, end) in enumerate(zip(axes, machine.ends, strict=True)):
-        letter = AXIS_LETTERS[axis_number]
+        letter = machine.letters[axis_number]
         steps = float(axis.speed * axis.steps_per_mm)
         fitted = ", ".join(end.switches) or "no switches"
         own = ", ".join(machine.motors[motor] for motor in machine.motors_of(axis_number))
@@ -256,6 +260,7 @@ def definitions(machine: MachineFile) -> dict[str, Any]:
     homed = sum((end.home is not None) << axis for axis, end in enumerate(machine.ends))
     return {
         "AXES": len(machine.ends),
+        **({"AXES_LEFT_OUT": machine.gcode.left_out} if machine.gcode.left_out else {}),
         "HOMES": machine.mask("home"),
         "LIMITS_LOW": machine.mask("limit_low"),
         "LIMITS_HIGH": machine.mask("limit_high"),

@@ -44,6 +44,7 @@ class Asked:
     waves: str | None = None
     look_ahead: int = LOOK_AHEAD
     only: Lines | None = None
+    inputs: int | None = None  # of M66: bits of those that are high
 
 
 def run_part(files: Sequence[Path], asked: Asked) -> bool:
@@ -51,7 +52,7 @@ def run_part(files: Sequence[Path], asked: Asked) -> bool:
 
     Ctrl-C ends it: KeyboardInterrupt, once the results up to then are written.
     """
-    machine = machine_of(files, asked.machine)
+    machine = machine_of(files, asked.machine, asked.inputs)
     window = wanted_window(asked.waves, asked.engine)
     part = read_part(files, machine, read_tools(asked.tools), asked.only)
     out = asked.out or paths.results / "run" / part.name
@@ -77,11 +78,12 @@ def run_part(files: Sequence[Path], asked: Asked) -> bool:
     return not found
 
 
-def machine_of(files: Sequence[Path], path: Path | None) -> MachineFile:
-    """The machine that a part needs; raises BadInputError."""
+def machine_of(files: Sequence[Path], path: Path | None, inputs: int | None = None) -> MachineFile:
+    """The machine that a part needs, with the levels that M66 reads; raises BadInputError."""
     if path is None:
         raise BadInputError(f"{files[0]}: G-code needs --machine MACHINE.toml (docs/gcode.md)")
-    return read_machine(path)
+    machine = read_machine(path)
+    return replace(machine, gcode=replace(machine.gcode, levels=inputs))
 
 
 def say_unread(part: Part) -> None:

@@ -23,6 +23,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--machine", type=Path, metavar="MACHINE.toml", help="of G-code: axes and limits (docs/gcode.md)"
     )
     parser.add_argument("--tools", type=Path, metavar="TOOLS.tbl", help=expand_options.TOOLS)
+    expand_options.add_inputs(parser)
     parser.add_argument(
         "--from",
         dest="first",
@@ -57,6 +58,7 @@ def refuse(options: argparse.Namespace, suffixes: Sequence[str]) -> None:
     given = {
         "--machine": options.machine,
         "--tools": options.tools,
+        "--inputs": options.inputs is not None,
         "--from": options.first,
         "--to": options.last,
         "--look-ahead": options.look_ahead != LOOK_AHEAD,

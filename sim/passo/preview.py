@@ -47,7 +47,7 @@ class Refused:
             return "no probe is fitted: `passo console --grbl` has one"
         if self.error < NO_PROBE:
             return error_text(NO_PROBE - self.error)
-        return explain_text(GcodeError(self.error), text.decode("utf-8", "replace"), settings.axes)
+        return explain_text(GcodeError(self.error), text.decode("utf-8", "replace"), settings)
 
 
 @dataclass(frozen=True)
@@ -117,8 +117,9 @@ def plan_lines(
     c, whole = previewer(), b"".join(text)
     buffer = ffi().from_buffer(whole)
     config = ffi().new("struct passo_preview_config *", {**vars(machine.pins), "text": buffer})
+    inputs = machine.gcode.simulated_inputs()
     config.program.path = machine.settings.struct(parameters)[0]
-    config.program.gcode = machine.gcode.struct()[0]
+    config.program.gcode, config.program.inputs = machine.gcode.struct()[0], inputs
     config.length, config.look_ahead, config.period = len(whole), look_ahead, machine.clock_hz // polls
     config.core_axes = parameters.axes
     config.line_queue_log2, config.ramp_queue_log2 = parameters.line_queue_log2, parameters.ramp_queue_log2

@@ -32,12 +32,13 @@ def run_preview(
     out: Path | None = None,
     look_ahead: int = LOOK_AHEAD,
     only: Lines | None = None,
+    inputs: int | None = None,
 ) -> bool:
     """Plan a part and say what is found; return whether all of it can be played.
 
     Ctrl-C ends it: KeyboardInterrupt, once the results up to then are written.
     """
-    machine = machine_of(files, machine_path)
+    machine = machine_of(files, machine_path, inputs)
     part = read_part(files, machine, read_tools(tools), only)
     with progress(part.path.name, len(part.lines)) as report:
         planned = plan_part(part, machine, look_ahead, report)

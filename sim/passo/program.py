@@ -23,6 +23,7 @@ class Program:
         settings = ffi().new("struct passo_program_settings *")
         settings.path = path.struct(driver.engine.parameters)[0]
         settings.gcode = gcode.struct()[0]
+        self._inputs = settings.inputs = gcode.simulated_inputs()
         self._check("open", self._c.passo_program_open(self.c, driver.c, settings, self._items, look_ahead))
 
     def begin(self, gcode: Any, steps: Sequence[int]) -> None:

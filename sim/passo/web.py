@@ -14,7 +14,6 @@ from passo.build import engine_sources
 from passo.cache import cached
 from passo.compiler import call, headers, includes, sources
 from passo.failure import BuildError
-from passo.gcode import AXIS_LETTERS
 from passo.machine_file import MachineFile, read_machine
 from passo.native import planner
 from passo.output import make_folder, write_text
@@ -67,7 +66,7 @@ def facts() -> str:
     machine = read_machine(EXAMPLE / "machine.toml")
     axes = [
         {"name": name, "per_step": float(1 / axis.steps_per_mm), "speed": float(axis.speed)}
-        for name, axis in zip(AXIS_LETTERS, machine.settings.axes, strict=False)
+        for name, axis in zip(machine.letters, machine.settings.axes, strict=True)
     ]
     program = (EXAMPLE / "part.nc").read_text(encoding="ascii")
     made = {"numbers": numbers(machine), "clock_hz": machine.clock_hz, "axes": axes, "program": program}

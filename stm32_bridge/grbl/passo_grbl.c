@@ -191,6 +191,11 @@ static void heed(struct passo_grbl *grbl, enum passo_player_event event, enum pa
 		passo_grbl_begin_change(grbl);
 #endif
 		break;
+	case PASSO_PLAYER_INPUT:
+#ifndef PASSO_PLAIN_GCODE
+		passo_grbl_report_input(grbl);
+#endif
+		break;
 	case PASSO_PLAYER_NOTHING:
 	case PASSO_PLAYER_PAUSED:
 		break;

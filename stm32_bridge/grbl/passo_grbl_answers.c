@@ -122,6 +122,17 @@ void passo_grbl_report_probe(struct passo_grbl *grbl)
 	passo_grbl_say(grbl, grbl->player->touched ? ":1]\r\n" : ":0]\r\n");
 }
 
+#ifndef PASSO_PLAIN_GCODE
+void passo_grbl_report_input(struct passo_grbl *grbl)
+{
+	const int8_t input = grbl->player->input;
+
+	passo_grbl_say(grbl, input < 0   ? "[MSG:M66:-1]\r\n"
+	                     : input > 0 ? "[MSG:M66:1]\r\n"
+	                                 : "[MSG:M66:0]\r\n");
+}
+#endif
+
 void passo_grbl_report_settings(struct passo_grbl *grbl)
 {
 	const struct passo_grbl_counts counts = passo_grbl_counts(grbl);

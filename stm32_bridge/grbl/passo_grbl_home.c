@@ -79,7 +79,9 @@ static void tell_skewed(struct passo_grbl *grbl)
 	if (!passo_home_is_skewed(grbl->player->feed->passo, &motor))
 		return;
 	passo_grbl_say(grbl, "[MSG:Motor ");
-	passo_grbl_say(grbl, (const char[]){passo_gcode_axis_letter(passo_grbl_axis_of(grbl, motor)), '\0'});
+	passo_grbl_say(grbl, (const char[]){passo_gcode_axis_letter(grbl->player->gcode->settings.left_out,
+						passo_grbl_axis_of(grbl, motor)),
+				 '\0'});
 	for (unsigned other = motor, number = 1; other-- > 0;) {
 		number += passo_grbl_axis_of(grbl, other) == passo_grbl_axis_of(grbl, motor);
 		if (other == 0 && number > 1)

@@ -130,6 +130,8 @@ void passo_grbl_poll_home(struct passo_grbl *grbl);
 void passo_grbl_take_message(struct passo_grbl *grbl);
 /* Says them then. */
 void passo_grbl_poll_message(struct passo_grbl *grbl);
+/* What M66 has read. */
+void passo_grbl_report_input(struct passo_grbl *grbl);
 /* M6, at rest. */
 void passo_grbl_begin_change(struct passo_grbl *grbl);
 /* Lines that are received from now on are taken before those of the program. */

@@ -144,7 +144,9 @@ static void report_inputs(struct passo_grbl *grbl)
 		passo_grbl_say(grbl, "P");
 	for (unsigned axis = 0; axis < grbl->player->gcode->settings.axes; axis++) {
 		if (switches & passo_grbl_motors_of(grbl, axis))
-			passo_grbl_say(grbl, (const char[]){passo_gcode_axis_letter(axis), '\0'});
+			passo_grbl_say(grbl,
+			    (const char[]){
+				passo_gcode_axis_letter(grbl->player->gcode->settings.left_out, axis), '\0'});
 	}
 	if (readings.estop)
 		passo_grbl_say(grbl, "R");

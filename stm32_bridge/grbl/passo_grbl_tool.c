@@ -17,6 +17,13 @@
 
 enum touch { TOUCH_NONE, TOUCH_SEEK, TOUCH_BACK, TOUCH_FEED, TOUCH_CLEAR };
 
+static bool has_tool_axis(const struct passo_grbl *grbl)
+{
+	const struct passo_gcode_settings *settings = &grbl->player->gcode->settings;
+
+	return settings->axes > TOOL_AXIS && passo_gcode_axis_letter(settings->left_out, TOOL_AXIS) == 'Z';
+}
+
 void passo_grbl_begin_change(struct passo_grbl *grbl)
 {
 	passo_grbl_say(grbl, "[MSG:Tool change: T");
@@ -28,7 +35,7 @@ void passo_grbl_report_tools(struct passo_grbl *grbl)
 {
 	const struct passo_gcode *gcode = grbl->player->gcode;
 
-	for (unsigned tool = 0; tool < PASSO_GCODE_TOOLS && gcode->settings.axes > TOOL_AXIS; tool++) {
+	for (unsigned tool = 0; tool < PASSO_GCODE_TOOLS && has_tool_axis(grbl); tool++) {
 		const passo_gcode_position offset = {[TOOL_AXIS] = gcode->offsets.tool_length[tool]};
 
 		if (offset[TOOL_AXIS] == 0)
@@ -47,7 +54,7 @@ void passo_grbl_report_tools(struct passo_grbl *grbl)
 
 enum passo_gcode_error passo_grbl_set_reference(struct passo_grbl *grbl)
 {
-	if (!grbl->player->touched || grbl->player->gcode->settings.axes <= TOOL_AXIS)
+	if (!grbl->player->touched || !has_tool_axis(grbl))
 		return PASSO_GCODE_TOOL_LENGTH_UNKNOWN;
 	grbl->reference = grbl->player->touch[TOOL_AXIS];
 	grbl->measured = true;
@@ -84,7 +91,7 @@ enum passo_gcode_error passo_grbl_touch(struct passo_grbl *grbl)
 {
 	const struct passo_gcode *gcode = grbl->player->gcode;
 
-	if (gcode->settings.axes <= TOOL_AXIS || !grbl->setup->probe)
+	if (!has_tool_axis(grbl) || !grbl->setup->probe)
 		return PASSO_GCODE_TOOL_LENGTH_UNKNOWN;
 	move(grbl, TOUCH_SEEK,
 	    gcode->position[TOOL_AXIS] - grbl->stored.settings.value[PASSO_GRBL_TOUCH_DISTANCE],

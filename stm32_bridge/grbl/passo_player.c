@@ -212,12 +212,11 @@ enum passo_error passo_player_restart(struct passo_player *player)
 	player->waits = player->probes = player->paused = player->dwells = false;
 	player->levels |= PASSO_PLAYER_UNSURE;
 	if (PASSO_GCODE_HAS_TOOLS)
-		player->restores = player->spins = false;
+		player->restores = player->spins = player->listened = false;
 	return PASSO_OK;
 }
 
-/* Time passes at rest, unless held. */
-static void dwell(struct passo_player *player)
+void passo_player_dwell(struct passo_player *player)
 {
 	const uint32_t now = passo_driver_now(player->feed->passo);
 	const uint32_t passed = player->held || !player->dwells ? 0u : now - player->dwells_at;
@@ -244,8 +243,10 @@ static enum passo_error take_at_rest(struct passo_player *player, enum passo_pla
 	case PASSO_GCODE_PROBE:
 		return passo_player_begin_probe(player, event);
 	case PASSO_GCODE_DWELL:
-		dwell(player);
+		passo_player_dwell(player);
 		break;
+	case PASSO_GCODE_INPUT:
+		return PASSO_GCODE_HAS_TOOLS ? passo_player_listen(player, event) : PASSO_OK;
 	case PASSO_GCODE_PAUSE:
 		player->paused = true;
 		*event = PASSO_PLAYER_PAUSED;
@@ -303,6 +304,7 @@ static enum passo_error take_action(struct passo_player *player, enum passo_play
 	case PASSO_GCODE_PROBE:
 	case PASSO_GCODE_PAUSE:
 	case PASSO_GCODE_CHANGE:
+	case PASSO_GCODE_INPUT:
 	case PASSO_GCODE_END:
 		return take_at_rest(player, event);
 	case PASSO_GCODE_OFFSETS:

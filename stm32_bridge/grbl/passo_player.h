@@ -26,6 +26,7 @@ enum passo_player_event {
 	PASSO_PLAYER_OFFSETS,   /* struct passo_gcode_offsets must be stored */
 	PASSO_PLAYER_PAUSED,    /* M0: at rest until passo_player_go_on() */
 	PASSO_PLAYER_TOOL,      /* M6: the same, for tool passo_player.loads */
+	PASSO_PLAYER_INPUT,     /* M66 is over: passo_player.input is the level, or -1: not what was wanted */
 	PASSO_PLAYER_ENDED,     /* M2, M30: at rest */
 	PASSO_PLAYER_TRAVEL,    /* a target outside the travel; the rest of its line is dropped */
 	PASSO_PLAYER_PROBED,    /* the probe triggered, or was optional: passo_player.touch, touched */
@@ -39,7 +40,8 @@ struct passo_player_machine {
 	const struct passo_path_axis *axis; /* as passed to passo_path_open() */
 	bool limited;                       /* targets must be within low .. high, machine coordinates */
 	passo_gcode_position low, high;
-	uint32_t spin_up; /* us that a motion waits for the spindle; 0: none */
+	uint32_t spin_up;       /* us that a motion waits for the spindle; 0: none */
+	const uint16_t *inputs; /* levels that M66 reads, P0 is bit 0; NULL: those of the core */
 };
 
 /* Number of recent lines of the path whose numbers are kept. */
@@ -79,6 +81,8 @@ struct passo_player {
 	bool restores;   /* they are to be those of the program again */
 	bool spins;      /* the spindle comes up to speed */
 	uint32_t spins_at;
+	bool listened; /* M66 has read its input */
+	int8_t input;  /* that level */
 	bool dwells;
 	uint64_t dwell;     /* remaining microseconds */
 	uint32_t dwells_at; /* time of that value */

@@ -7,8 +7,12 @@
 #include "passo_player.h"
 
 uint64_t passo_player_magnitude(int64_t value);
+/* The time of an action passes at rest, unless held; `waits` until it is over. */
+void passo_player_dwell(struct passo_player *player);
 /* Drops the rest of the line: the program continues from where the path ends. */
 void passo_player_drop(struct passo_player *player);
+/* M66, at rest: its event once it is over; `waits` until then. */
+enum passo_error passo_player_listen(struct passo_player *player, enum passo_player_event *event);
 /* At rest. An event if there is no probe, or if it has its level already. */
 enum passo_error passo_player_begin_probe(struct passo_player *player, enum passo_player_event *event);
 /* The motion has ended. */

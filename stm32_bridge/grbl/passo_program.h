@@ -22,6 +22,8 @@
 struct passo_program_settings {
 	struct passo_path_settings path;
 	struct passo_gcode_settings gcode;
+	const uint16_t
+	    *inputs; /* of a simulation, see struct passo_player_machine; NULL: those of the core */
 };
 
 /* All members but player.chords are private. */

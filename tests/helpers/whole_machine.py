@@ -222,7 +222,7 @@ def run(whole: WholeMachine, part: Sequence[str], patience: float = PATIENCE) ->
     Raises AssertionError for an alarm, a drive whose timings are violated, an end more than half a step off.
     """
     machine, link = whole.machine, whole.folder / "serial"
-    letters = AXIS_LETTERS[: len(machine.ends)]
+    letters = machine.letters
     with whole.engine() as engine:
         plugged = GrblBoard(engine, whole.elf, whole.settings())
         if any(end.home for end in machine.ends):
@@ -253,7 +253,7 @@ def run(whole: WholeMachine, part: Sequence[str], patience: float = PATIENCE) ->
     file.write_text("\n".join(part) + "\n")
     end = read_part(file, machine).end
     for axis, (driven, limits) in enumerate(zip(seen, machine.settings.axes, strict=True)):
-        assert not driven.faults, f"drive {AXIS_LETTERS[axis]}: {driven.faults}"
+        assert not driven.faults, f"drive {machine.letters[axis]}: {driven.faults}"
         before = int(np.searchsorted(driven.seconds, began))
         placed = driven.positions[before - 1] if before else 0
         wanted = end[axis] / NANOMETERS * float(limits.steps_per_mm)

@@ -5,6 +5,7 @@ import argparse
 import math
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from passo.expand.expander import Options, expand_file
@@ -40,7 +41,7 @@ def run_height_map(asked: argparse.Namespace) -> None:
 
 def _options(asked: argparse.Namespace) -> Options:
     gcode = read_machine(asked.machine).gcode if asked.machine else Options().gcode
-    return Options(gcode, read_tools(asked.tools), asked.at_zero)
+    return Options(replace(gcode, levels=asked.inputs), read_tools(asked.tools), asked.at_zero)
 
 
 def _expanded(part: Path, options: Options) -> list[PlainLine]:

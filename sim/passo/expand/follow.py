@@ -27,7 +27,7 @@ MACHINE_COORDINATES = {280, 300, 530}
 
 def follow(lines: Sequence[PlainLine], height_map: HeightMap, options: Options) -> list[PlainLine]:
     """Plain lines on a map; raises BadInputError."""
-    if options.gcode.axes <= Z:
+    if "Z" not in options.gcode.axis_letters:
         raise BadInputError("the machine has no axis Z that could follow a height map")
     follower = _Follower(height_map, options)
     for line in lines:

@@ -12,7 +12,7 @@ from functools import cache
 from passo.expand.block import Word
 from passo.expand.place import LineError
 from passo.expand.tools import Tool, lengths
-from passo.gcode import AXIS_LETTERS, NANOMETERS, Gcode, GcodeSettings, set_tool_lengths
+from passo.gcode import LINEAR, NANOMETERS, Gcode, GcodeSettings, set_tool_lengths
 from passo.native import planner
 
 INCH = 25.4
@@ -28,12 +28,13 @@ PLANES = {170: (0, 1), 180: (2, 0), 190: (1, 2)}
 PROBED, HOMES = range(5061, 5071), (*range(5161, 5170), *range(5181, 5190))
 SHIFT, SYSTEM_NUMBER, SYSTEM_OFFSETS = range(5210, 5220), 5220, range(5221, 5391)
 INPUT, TOOL, POSITIONS = 5399, range(5400, 5414), range(5420, 5429)
-BESIDE_AXES = "ABCUVW"
+XYZABCUVW = "XYZABCUVW"
+HIGH, LOW = 3, 4  # L of M66
 # Names whose values a machine has, but nobody knows here.
 UNKNOWN_NAMES = frozenset(
     ("_speed_override", "_feed_override", "_adaptive_feed", "_feed_hold", "_current_pocket")
 )
-AXIS_NAMES = {f"_{letter}": axis for axis, letter in enumerate("xyzabcuvw")}
+AXIS_NAMES = {f"_{letter.lower()}": axis for axis, letter in enumerate(XYZABCUVW)}
 
 
 @cache
@@ -67,6 +68,7 @@ class Machine:
         set_tool_lengths(self.gcode.c, lengths(tools))
         self.compensation: int = 400
         self.tool: int | None = 0 if at_zero else None
+        self.input: float | None = 0.0 if at_zero else None
         axes = range(settings.axes)
         self._position = [at_zero for _ in axes]
         self._shift = [at_zero for _ in axes]
@@ -78,6 +80,11 @@ class Machine:
     def axes(self) -> int:
         """How many there are."""
         return self.gcode.settings.axes
+
+    @property
+    def letters(self) -> str:
+        """Of the axes."""
+        return self.gcode.settings.axis_letters
 
     @property
     def inch(self) -> bool:
@@ -156,37 +163,41 @@ class Machine:
         """A numbered parameter beyond the program's own; raises LineError."""
         c = self.gcode.c
         if index in POSITIONS:
-            return self._coordinate(index - POSITIONS[0], f"#{index}")
+            return self._coordinate(self._axis(index - POSITIONS[0]), f"#{index}")
         if index == SYSTEM_NUMBER:
             return float(SYSTEMS[self.mode(SYSTEM)] + 1)
         if index in SYSTEM_OFFSETS:
             system, axis = divmod(index - SYSTEM_OFFSETS[0], 20)
+            axis = self._axis(axis)
             if system < len(SYSTEMS) and axis < self.axes and self._systems[system][axis]:
                 return float(c.offsets.system[system][axis] / NANOMETERS)
             raise LineError(f"#{index} cannot be known: no G10 L2 before has set this offset")
         if index == SHIFT[0] and self._shifted is not None:
             return float(self._shifted)
         if index in SHIFT:
-            axis = index - SHIFT[0] - 1
-            if 0 <= axis < self.axes and self._shift[axis]:
+            axis = self._axis(index - SHIFT[0] - 1)
+            if axis < self.axes and self._shift[axis]:
                 return float(c.shift[axis] / NANOMETERS)
             raise LineError(f"#{index} cannot be known: no G92.1 is before, or no G92 at a known position")
         if index in TOOL:
             return self._of_tool(index)
         if index in HOMES and self.at_zero:
             home, axis = (0, index - 5161) if index < 5181 else (1, index - 5181)
+            axis = self._axis(axis)
             return float(c.offsets.home[home][axis] / NANOMETERS) if axis < self.axes else 0.0
         what = "it is in machine coordinates" if index in HOMES else "only the machine has it"
         if index in PROBED:
             what = "it is the result of a probe"
+        elif index == INPUT and self.input is not None:
+            return self.input
         elif index == INPUT:
-            what = "it is the result of M66"
+            what = "it is the result of M66 (--inputs)"
         raise LineError(f"#{index} cannot be known while expanding: {what}")
 
     def name(self, name: str) -> float | None:
         """A predefined named parameter; None: there is none. Raises LineError if it cannot be known."""
         if name in AXIS_NAMES:
-            return self._coordinate(AXIS_NAMES[name], f"#<{name}>")
+            return self._coordinate(self._axis(AXIS_NAMES[name]), f"#<{name}>")
         if name == "_current_tool":
             return self._of_tool(TOOL[0], f"#<{name}>")
         if name in UNKNOWN_NAMES or name.startswith(("_ini[", "_hal[", "_abs_")):
@@ -225,8 +236,21 @@ class Machine:
         if axis >= self.axes:
             return 0.0
         if not self._position[axis]:
-            raise LineError(f"{name} cannot be known: no absolute motion of {AXIS_LETTERS[axis]} is before")
-        return self.work[axis] / (self.scale if axis < 3 else 1.0)
+            raise LineError(f"{name} cannot be known: no absolute motion of {self.letters[axis]} is before")
+        return self.work[axis] / (self.scale if self.letters[axis] in LINEAR else 1.0)
+
+    def _axis(self, letter: int) -> int:
+        """The axis of a place in LinuxCNC's order, XYZABCUVW; as many as there are: none."""
+        name = XYZABCUVW[letter : letter + 1]
+        return self.letters.index(name) if name and name in self.letters else self.axes
+
+    def _read(self, values: dict[str, float]) -> float | None:
+        """What M66 finds; an input of a simulation never changes."""
+        levels = self.gcode.settings.levels
+        if levels is None and not self.at_zero:
+            return None
+        level, wanted = (levels or 0) >> int(values["P"]) & 1, int(values.get("L", 0))
+        return float(level) if wanted in (0, HIGH if level else LOW) else -1.0
 
     def _of_tool(self, index: int, name: str = "") -> float:
         name = name or f"#{index}"
@@ -250,10 +274,12 @@ class Machine:
         codes = {word.code for word in words if word.letter == "G"}
         commands = {word.code // 10: word.value for word in words if word.letter == "M"}
         values = {word.letter: word.value for word in words}
-        given = [axis for axis in range(self.axes) if AXIS_LETTERS[axis] in values]
+        given = [axis for axis in range(self.axes) if self.letters[axis] in values]
         if 6 in commands or 61 in commands:
             self.tool = round(values["Q"]) if 61 in commands and "Q" in values else int(self.gcode.c.tool)
             planner().passo_gcode_load(self.gcode.c, self.tool)
+        if 66 in commands:
+            self.input = self._read(values)
         if any(380 <= code < 390 for code in codes) or (380 <= self.mode(MOTION) < 390 and given):
             self._set(self._position, given, False)
         knew_length = self._length
@@ -269,7 +295,7 @@ class Machine:
             old = self._systems[SYSTEMS[old_system]]
             for axis in range(self.axes):
                 self._position[axis] &= old[axis] and self._systems[system][axis]
-        if codes & {431, 430, 432, 490} and self.axes > 2:
+        if codes & {431, 430, 432, 490} and "Z" in self.letters:
             self._position[2] &= knew_length
         if 100 in codes:
             self._learn_offsets(values, given, system)

@@ -39,7 +39,7 @@ class Output:
         self._compensation: Compensation | None = None
         self._leaving = False  # the first motion after G40 is due
         # In the plane of the compensation, while the tool is not where the program says.
-        self._writer = Writer(machine.plane, [])
+        self._writer = Writer(machine.letters, machine.plane, [])
         self._compensated = False
 
     def take(self, text: str, words: Sequence[Word], comments: Sequence[str], place: Place) -> None:
@@ -74,7 +74,7 @@ class Output:
         try:
             self.machine.advance(text, words)
         except GcodeError as error:
-            raise ExpandError(place, explain(error, words, self.machine.axes)) from None
+            raise ExpandError(place, explain(error, words, self.machine.gcode.settings)) from None
 
     def finish(self) -> None:
         """The program has ended; raises ExpandError."""
@@ -98,7 +98,7 @@ class Output:
         try:
             return self.machine.execute(text, words)
         except GcodeError as error:
-            raise ExpandError(place, explain(error, words, self.machine.axes)) from None
+            raise ExpandError(place, explain(error, words, self.machine.gcode.settings)) from None
 
     def _take_compensated(
         self, text: str, words: Sequence[Word], comments: Sequence[str], place: Place, codes: set[int]
@@ -138,7 +138,7 @@ class Output:
     def _passes(self, text: str, words: Sequence[Word], place: Place, codes: set[int]) -> bool:
         """Whether a line after G40 is not its last motion; it is taken then."""
         letters = {word.letter for word in words}
-        plane = {AXIS_LETTERS[axis] for axis in self._writer.plane}
+        plane = {self.machine.letters[axis] for axis in self._writer.plane}
         if codes & USES_POSITION:
             raise ExpandError(place, FIRST_AFTER)
         if not codes & {280, 300, 530}:
@@ -178,7 +178,7 @@ class Output:
         if not radius:
             return
         if not self._leaving:
-            self._writer = Writer(machine.plane, list(start))
+            self._writer = Writer(machine.letters, machine.plane, list(start))
         elif self._writer.plane != machine.plane:
             raise ExpandError(place, FIRST_AFTER)
         self._leaving, self._compensated = False, True
@@ -215,7 +215,7 @@ class Output:
     def _need_known(self, known: list[bool], place: Place) -> None:
         for axis in self._writer.plane:
             if not known[axis]:
-                letter = AXIS_LETTERS[axis]
+                letter = self.machine.letters[axis]
                 raise ExpandError(
                     place,
                     f"{letter} is not known at its beginning: move {letter} before {self._command}",

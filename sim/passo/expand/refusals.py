@@ -7,6 +7,7 @@ from passo.expand.block import Word, words_of
 from passo.gcode import AXIS_LETTERS, Gcode, GcodeError, GcodeSettings
 
 NOT_TAKEN = frozenset((3, 20, 23))  # errors of a command that Passo does not have
+UNUSED, NO_PORT = 36, 39
 # By the command in tenths, or a range of them: norm, and what to do.
 ADVICE: tuple[tuple[str, range, str, str], ...] = (
     ("G", range(50, 54), "LinuxCNC", "a spline: let the CAM program write G1, G2 and G3"),
@@ -25,8 +26,6 @@ ADVICE: tuple[tuple[str, range, str, str], ...] = (
     ("M", range(190, 200), "LinuxCNC", "the spindle cannot be oriented"),
     ("M", range(480, 540), "NIST, LinuxCNC", "overrides are the sender's: leave it out"),
     ("M", range(600, 610), "NIST", "pause with M0"),
-    ("M", range(620, 660), "LinuxCNC", "the machine has the outputs P0 to P3"),
-    ("M", range(660, 690), "LinuxCNC", "the machine has no such outputs and inputs"),
     ("M", range(700, 740), "LinuxCNC", "write the modes that are to be restored"),
     ("M", range(820, 1100), "RepRap", "this is for 3D printers: leave it out"),
     (
@@ -45,29 +44,42 @@ LETTERS = {
 }
 
 
-def explain(error: GcodeError, words: Sequence[Word], axes: int) -> str:
+def explain(error: GcodeError, words: Sequence[Word], settings: GcodeSettings) -> str:
     """The error of a line with the word that it is about, where that is known."""
+    axes = settings.axis_letters
+    if error.number == NO_PORT:
+        return f"{error}: {_ports(settings)}"
+    if error.number == UNUSED and (word := next((word for word in words if word.letter == "E"), None)):
+        return f"{error}: {word} ({LETTERS['E']})"
     if error.number not in NOT_TAKEN:
         return str(error)
     for word in words:
-        if word.letter in AXIS_LETTERS[axes:]:
-            return f"{error}: {word}: the machine has the axes {' '.join(AXIS_LETTERS[:axes])}"
-        if word.letter in LETTERS and not _is_taken(word, axes):
+        if word.letter in AXIS_LETTERS and word.letter not in axes:
+            return f"{error}: {word}: the machine has the axes {' '.join(axes)}"
+        if word.letter in LETTERS and not _is_taken(word, settings):
             return f"{error}: {word} ({LETTERS[word.letter]})"
-        if word.letter in "GM" and not _is_taken(word, axes):
+        if word.letter in "GM" and not _is_taken(word, settings):
             norm, advice = _advice(word)
             return f"{error}: {word} ({norm}): {advice}"
     return str(error)
 
 
-def explain_text(error: GcodeError, text: str, axes: int) -> str:
+def explain_text(error: GcodeError, text: str, settings: GcodeSettings) -> str:
     """The same for a line as text."""
-    return explain(error, words_of(text), axes)
+    return explain(error, words_of(text), settings)
 
 
-def _is_taken(word: Word, axes: int) -> bool:
+def _ports(settings: GcodeSettings) -> str:
+    """Those of M62 to M68 that there are."""
+    count = settings.inputs
+    inputs = f"the inputs P0 to P{count - 1}" if count else "no inputs (no switch, no probe)"
+    power = "the analog output E0" if settings.power else "no analog output (no spindle_maximum)"
+    return f"there are the outputs P0 to P3, {inputs}, {power}"
+
+
+def _is_taken(word: Word, settings: GcodeSettings) -> bool:
     try:
-        Gcode(GcodeSettings(axes=axes)).execute(str(word))
+        Gcode(settings).execute(str(word))
     except GcodeError as error:
         return error.number not in NOT_TAKEN
     return True

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from passo.expand.block import Word, shown
 from passo.expand.compensation import Step, arc_length
-from passo.gcode import AXIS_LETTERS
+from passo.gcode import LINEAR
 
 UNSEEN = 1e-9  # mm
 
@@ -20,6 +20,7 @@ class Writer:
     place is not known is at infinity.
     """
 
+    letters: str  # of the axes
     plane: tuple[int, int]
     at: list[float]
     whole: bool = True
@@ -34,8 +35,9 @@ class Writer:
         for axis, before in enumerate(begin):
             needed = axis in self.plane and (self.whole or step.center is not None)
             if needed or abs(end[axis] - before) > UNSEEN:
-                scale, origin = step.scale if axis < 3 else 1.0, before if step.incremental else 0.0
-                word = Word(AXIS_LETTERS[axis], (end[axis] - origin) / scale)
+                letter, origin = self.letters[axis], before if step.incremental else 0.0
+                scale = step.scale if letter in LINEAR else 1.0
+                word = Word(letter, (end[axis] - origin) / scale)
                 words.append(word)
                 self.at[axis] = float(shown(word.value)) * scale + origin
         if step.center is not None:

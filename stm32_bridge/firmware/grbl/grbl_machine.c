@@ -54,6 +54,9 @@ static void grbl_defaults(struct passo_grbl_settings *settings)
 }
 
 _Static_assert(AXES <= GRBL_AXES_MAX, "the image has fewer axes");
+#ifdef PASSO_PLAIN_GCODE
+_Static_assert(AXES_LEFT_OUT == 0, "the image has the axes X Y Z A B C without a gap");
+#endif
 #ifdef PASSO_CARTESIAN
 _Static_assert(MOTORS == 0, "the image has a motor for each axis");
 _Static_assert(!HAS_ENCODERS, "the image has no encoders");

@@ -20,6 +20,12 @@
 #define GRBL_AXES_MAX                                                                                        \
 	(PASSO_PATH_AXES_MAX < PASSO_GCODE_AXES_MAX ? PASSO_PATH_AXES_MAX : PASSO_GCODE_AXES_MAX)
 
+/* Those that it leaves out, a bit for each letter of XYZABC: of X Y Z only the last ones. Not in an image
+ * with PASSO_PLAIN_GCODE. */
+#ifndef AXES_LEFT_OUT
+#define AXES_LEFT_OUT 0
+#endif
+
 /* Fitted switches, a bit per axis; and whether there is a probe. */
 #ifndef LIMITS_LOW
 #define LIMITS_LOW 0

@@ -191,7 +191,8 @@ static void start(void)
 	grbl_machine(&setup, &passo, &flash_pages);
 	setup.take_line = take_line;
 	passo_gcode_open(
-	    &gcode, &(struct passo_gcode_settings){.axes = setup.path.machine.axes, .arc_tolerance = 1});
+	    &gcode, &(struct passo_gcode_settings){
+			.axes = setup.path.machine.axes, .left_out = AXES_LEFT_OUT, .arc_tolerance = 1});
 	passo_path_feed_open(&feed, &passo, &path);
 	passo_player_open(&player, &gcode, &feed, NULL);
 	passo_grbl_open(&grbl, &player, &sink, &setup);
