@@ -128,7 +128,7 @@ char passo_gcode_axis_letter(uint8_t left_out, unsigned axis)
 	unsigned at = 0;
 
 	for (; at + 1u < PASSO_GCODE_AXES_MAX; at++) {
-		if (!(left_out >> at & 1u) && axis-- == 0)
+		if ((left_out >> at & 1) == 0 && axis-- == 0)
 			break;
 	}
 	return AXIS_LETTERS[at];

@@ -51,7 +51,7 @@ bool passo_gcode_is_linear(const struct passo_gcode *gcode, unsigned axis)
 	(void)gcode, (void)axis;
 	return true;
 #else
-	return !(gcode->settings.left_out >> axis & 1u);
+	return (gcode->settings.left_out >> axis & 1) == 0;
 #endif
 }
 
