@@ -170,6 +170,7 @@ def _run(options: argparse.Namespace) -> int:
             options.look_ahead,
             part_options.lines_of(options),
             options.inputs,
+            options.surface,
         )
         return OK if run_part(options.moves, asked) else FAILED
     from passo.run_command import Wanted, run_file
@@ -192,6 +193,7 @@ def _preview(options: argparse.Namespace) -> int:
         options.look_ahead,
         part_options.lines_of(options),
         options.inputs,
+        options.surface,
     )
     return OK if done else FAILED
 

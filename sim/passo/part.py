@@ -13,6 +13,7 @@ import numpy as np
 from passo.driver import Driver, DriverError
 from passo.engine import Engine
 from passo.expand.expander import Options, expand_file, needs_expanding
+from passo.expand.height_map import HeightMap
 from passo.expand.place import Place
 from passo.expand.tools import Tool, lengths
 from passo.failure import BadInputError
@@ -124,10 +125,12 @@ def read_part(
     machine: MachineFile,
     tools: dict[int, Tool] | None = None,
     only: Lines | None = None,
+    surface: HeightMap | None = None,
 ) -> Part:
     """Check all lines of a file, or of several in turn, expanded where they need that.
 
-    Each file ends at its M2 or M30. Raises BadInputError with all bad lines.
+    Each file ends at its M2 or M30. Probes touch `surface`, in machine coordinates. Raises BadInputError with
+    all bad lines.
     """
     files = [path] if isinstance(path, Path) else list(path)
     if only and len(files) > 1:
@@ -137,7 +140,7 @@ def read_part(
     begin = _begin(gcode, machine)
     whole, places, refused, chords, unread = [], [], [], 0, 0
     for file in files:
-        text, where = _read(file, machine, tools or {})
+        text, where = _read(file, machine, tools or {}, surface)
         if only:
             before, text, where = _split(file, text, where, only)
             checked = check_lines(before, gcode)
@@ -159,7 +162,9 @@ def read_part(
     return Part(first, whole, places, chords, position_of(gcode), unread, table, begin)
 
 
-def _read(path: Path, machine: MachineFile, tools: dict[int, Tool]) -> tuple[list[bytes], list[Place]]:
+def _read(
+    path: Path, machine: MachineFile, tools: dict[int, Tool], surface: HeightMap | None
+) -> tuple[list[bytes], list[Place]]:
     """The lines of a file and their places."""
     try:
         data = sys.stdin.buffer.read() if path == STANDARD_INPUT else path.read_bytes()
@@ -167,8 +172,11 @@ def _read(path: Path, machine: MachineFile, tools: dict[int, Tool]) -> tuple[lis
         raise BadInputError(f"{path}: {error.strerror}") from None
     name = STDIN if path == STANDARD_INPUT else path
     text = lines(data)
-    if needs_expanding(data):
-        expanded = expand_file(name, Options(machine.gcode, tools, at_zero=True), _say, data)
+    if surface and "Z" not in machine.letters:
+        raise BadInputError(f"{name}: the machine has no axis Z that could probe a surface")
+    if surface or needs_expanding(data):
+        options = Options(machine.gcode, tools, at_zero=True, surface=surface)
+        expanded = expand_file(name, options, _say, data)
         text, places = [f"{line.text}\n".encode() for line in expanded], [line.place for line in expanded]
     else:
         places = [Place(name, number) for number in range(1, len(text) + 1)]

@@ -13,6 +13,7 @@ import numpy as np
 from passo.axis_judge import Share, faults
 from passo.console import progress
 from passo.course import Course
+from passo.expand.height_map import HeightMap, read_height_map
 from passo.expand.tools import read_tools
 from passo.failure import BadInputError
 from passo.gcode import NANOMETERS
@@ -45,6 +46,7 @@ class Asked:
     look_ahead: int = LOOK_AHEAD
     only: Lines | None = None
     inputs: int | None = None  # of M66: bits of those that are high
+    surface: Path | None = None  # a height map that probes touch
 
 
 def run_part(files: Sequence[Path], asked: Asked) -> bool:
@@ -54,7 +56,7 @@ def run_part(files: Sequence[Path], asked: Asked) -> bool:
     """
     machine = machine_of(files, asked.machine, asked.inputs)
     window = wanted_window(asked.waves, asked.engine)
-    part = read_part(files, machine, read_tools(asked.tools), asked.only)
+    part = read_part(files, machine, read_tools(asked.tools), asked.only, surface_of(asked.surface))
     out = asked.out or paths.results / "run" / part.name
     with progress(part.path.name, part.chords) as report:
         played, judged, summary = play_to(out, part, machine, asked.engine, asked, report, window)
@@ -84,6 +86,11 @@ def machine_of(files: Sequence[Path], path: Path | None, inputs: int | None = No
         raise BadInputError(f"{files[0]}: G-code needs --machine MACHINE.toml (docs/gcode.md)")
     machine = read_machine(path)
     return replace(machine, gcode=replace(machine.gcode, levels=inputs))
+
+
+def surface_of(path: Path | None) -> HeightMap | None:
+    """The height map of a file, if there is one; raises BadInputError."""
+    return read_height_map(path) if path else None
 
 
 def say_unread(part: Part) -> None:

@@ -25,6 +25,12 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--tools", type=Path, metavar="TOOLS.tbl", help=expand_options.TOOLS)
     expand_options.add_inputs(parser)
     parser.add_argument(
+        "--surface",
+        type=Path,
+        metavar="MAP.csv",
+        help="x,y,z in mm and machine coordinates: what probes (G38) touch",
+    )
+    parser.add_argument(
         "--from",
         dest="first",
         type=int,
@@ -59,6 +65,7 @@ def refuse(options: argparse.Namespace, suffixes: Sequence[str]) -> None:
         "--machine": options.machine,
         "--tools": options.tools,
         "--inputs": options.inputs is not None,
+        "--surface": options.surface,
         "--from": options.first,
         "--to": options.last,
         "--look-ahead": options.look_ahead != LOOK_AHEAD,

@@ -44,7 +44,7 @@ class Refused:
     def why(self, text: bytes, settings: GcodeSettings) -> str:
         """What is wrong with the line, and what to write instead."""
         if self.error == NO_PROBE:
-            return "no probe is fitted: `passo console --grbl` has one"
+            return "no probe is fitted: --surface MAP.csv simulates one"
         if self.error < NO_PROBE:
             return error_text(NO_PROBE - self.error)
         return explain_text(GcodeError(self.error), text.decode("utf-8", "replace"), settings)

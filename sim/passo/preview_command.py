@@ -13,7 +13,7 @@ from passo.course import Course
 from passo.expand.tools import read_tools
 from passo.output import empty_folder, write_json, write_text
 from passo.part import Lines, Part, plan_part, read_part
-from passo.part_command import machine_of, say_unread
+from passo.part_command import machine_of, say_unread, surface_of
 from passo.path import LOOK_AHEAD
 from passo.toolchain import paths
 
@@ -33,13 +33,14 @@ def run_preview(
     look_ahead: int = LOOK_AHEAD,
     only: Lines | None = None,
     inputs: int | None = None,
+    surface: Path | None = None,
 ) -> bool:
     """Plan a part and say what is found; return whether all of it can be played.
 
     Ctrl-C ends it: KeyboardInterrupt, once the results up to then are written.
     """
     machine = machine_of(files, machine_path, inputs)
-    part = read_part(files, machine, read_tools(tools), only)
+    part = read_part(files, machine, read_tools(tools), only, surface_of(surface))
     with progress(part.path.name, len(part.lines)) as report:
         planned = plan_part(part, machine, look_ahead, report)
     course = Course(planned, part.begin.place)

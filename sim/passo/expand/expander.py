@@ -24,6 +24,7 @@ from passo.expand.flow import (
     number_label,
     read_program,
 )
+from passo.expand.height_map import HeightMap
 from passo.expand.machine import Machine
 from passo.expand.output import ENDS, Output, PlainLine
 from passo.expand.parameters import ProgramParameters
@@ -47,6 +48,7 @@ class Options:
     gcode: GcodeSettings = field(default_factory=lambda: GcodeSettings(axes=6))
     tools: dict[int, Tool] = field(default_factory=dict)
     at_zero: bool = False  # the machine is known: at 0, without offsets
+    surface: HeightMap | None = None  # in machine coordinates, that probes touch; needs at_zero
     limit: int = LIMIT
 
 
@@ -93,7 +95,7 @@ class _Run:
         self.options, self.say, self.folder = options, say, path.parent
         self.machine = Machine(options.gcode, options.tools, options.at_zero)
         self.parameters = ProgramParameters(self.machine)
-        self.output = Output(self.machine)
+        self.output = Output(self.machine, options.surface)
         self.program = _read(path) if data is None else read_program(path, _lines(data))
         self.files: dict[str, Program] = {}
         self.count, self.repeating = 0, 0

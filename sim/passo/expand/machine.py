@@ -9,8 +9,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 
+import numpy as np
+
 from passo.expand.block import Word
+from passo.expand.height_map import HeightMap
 from passo.expand.place import LineError
+from passo.expand.surface import share_of_probe
 from passo.expand.tools import Tool, lengths
 from passo.gcode import LINEAR, NANOMETERS, Gcode, GcodeSettings, set_tool_lengths
 from passo.native import planner
@@ -68,6 +72,7 @@ class Machine:
         set_tool_lengths(self.gcode.c, lengths(tools))
         self.compensation: int = 400
         self.tool: int | None = 0 if at_zero else None
+        self.probed: tuple[tuple[float, ...], bool] | None = None  # mm and work coordinates; touched
         self.input: float | None = 0.0 if at_zero else None
         axes = range(settings.axes)
         self._position = [at_zero for _ in axes]
@@ -159,6 +164,20 @@ class Machine:
             center = (center - complex(offsets[plane[0]], offsets[plane[1]])) / NANOMETERS
         return Motion(start, end, rapid, center, clockwise, plane)
 
+    def probe(self, surface: HeightMap, text: str, words: Sequence[Word]) -> tuple[float, ...]:
+        """Execute a line with a probe; return where it ends, mm, machine coordinates. Raises LineError."""
+        c, begin = self.gcode.c, np.array(self.gcode.position)
+        self.advance(text, words)
+        end, command = np.array(self.gcode.position), self.mode(MOTION)
+        tip = np.array([0.0, 0.0, self.gcode.c.tool_length])
+        ends = ((place[:3] - tip) / NANOMETERS for place in (begin, end))
+        share = share_of_probe(surface, command, *ends)
+        place = np.rint(begin + (end - begin) * (1.0 if share is None else share)).astype(int)
+        planner().passo_gcode_set_position(c, place.tolist())
+        self._set(self._position, range(self.axes), True)
+        self.probed = self.work, share is not None
+        return tuple((place / NANOMETERS).tolist())
+
     def number(self, index: int) -> float:
         """A numbered parameter beyond the program's own; raises LineError."""
         c = self.gcode.c
@@ -186,8 +205,13 @@ class Machine:
             axis = self._axis(axis)
             return float(c.offsets.home[home][axis] / NANOMETERS) if axis < self.axes else 0.0
         what = "it is in machine coordinates" if index in HOMES else "only the machine has it"
+        if index in PROBED and self.probed:
+            place, touched = self.probed
+            axis = self._axis(index - PROBED[0])
+            scale = self.scale if XYZABCUVW[index - PROBED[0] :][:1] in LINEAR else 1.0
+            return float(touched) if index == PROBED[-1] else place[axis] / scale if axis < self.axes else 0.0
         if index in PROBED:
-            what = "it is the result of a probe"
+            what = "it is the result of a probe (passo run --surface)"
         elif index == INPUT and self.input is not None:
             return self.input
         elif index == INPUT:

@@ -6,16 +6,19 @@ from dataclasses import dataclass
 
 from passo.expand.block import Word
 from passo.expand.compensation import Compensation, Step
+from passo.expand.height_map import HeightMap
 from passo.expand.machine import CYCLES, FEED_MODE, LINES_AND_ARCS, MOTION, PLANE, SYSTEM, Machine, Motion
-from passo.expand.place import ExpandError, Place
+from passo.expand.place import ExpandError, LineError, Place
 from passo.expand.refusals import explain
+from passo.expand.surface import PROBES
 from passo.expand.writer import Writer, flat, length
-from passo.gcode import AXIS_LETTERS, Gcode, GcodeError
+from passo.gcode import AXIS_LETTERS, LINEAR, Gcode, GcodeError
 
 OFF, ON = 400, {410: 1, 411: 1, 420: -1, 421: -1}
 # Commands that may be used while compensation is on, besides those that change nothing.
 ALLOWED = {*LINES_AND_ARCS, 40, 610, 611, 640, 800, 200, 210, 900, 910, 911, 930, 940, OFF}
 FROM_TABLE, UNITS = {430, 432}, (200, 210)  # G43 and G43.2; G20 and G21
+MOVES = {*LINES_AND_ARCS, *CYCLES, 40, 100, 280, 300, 431, 800, 920}  # other commands for the axis words
 TOOL_CHANGES, PAUSES, ENDS = (6, 61), (0, 1, 60), (2, 30)
 # Commands that use the position, which is not that of the contour before the first motion after G40.
 USES_POSITION = {100, 281, 301, 920, *range(382, 386)}
@@ -33,8 +36,8 @@ class PlainLine:
 class Output:
     """Collects plain lines."""
 
-    def __init__(self, machine: Machine):
-        self.machine = machine
+    def __init__(self, machine: Machine, surface: HeightMap | None = None):
+        self.machine, self.surface = machine, surface
         self.lines: list[PlainLine] = []
         self._compensation: Compensation | None = None
         self._leaving = False  # the first motion after G40 is due
@@ -55,13 +58,36 @@ class Output:
             text, codes = " ".join([*map(str, words), *comments]), codes - FROM_TABLE
             if not text:
                 return
-        if self._compensation or self._leaving or codes & ON.keys():
+        if self.surface and self._probes(codes, words) and not self._compensation:
+            self._probe(self.surface, text, words, comments, place)
+        elif self._compensation or self._leaving or codes & ON.keys():
             self._take_compensated(text, words, comments, place, codes)
         else:
             if OFF in codes:
                 self.machine.compensation = OFF
             self._advance(text, words, place)
             self.lines.append(PlainLine(text, place))
+
+    def _probes(self, codes: set[int], words: Sequence[Word]) -> bool:
+        """Whether a line is a probe, by its command or by the one in force."""
+        moves = any(word.letter in self.machine.letters for word in words)
+        in_force = self.machine.mode(MOTION) in PROBES and not codes & MOVES and moves
+        return bool(codes & set(PROBES)) or in_force
+
+    def _probe(
+        self, surface: HeightMap, text: str, words: Sequence[Word], comments: Sequence[str], place: Place
+    ) -> None:
+        """A line to where a probe would end."""
+        machine = self.machine
+        try:
+            end = machine.probe(surface, text, words)
+        except (GcodeError, LineError) as error:
+            raise ExpandError(place, str(error)) from None
+        rest = [word for word in words if word.letter not in machine.letters and not _is_probe(word)]
+        scales = [machine.scale if letter in LINEAR else 1.0 for letter in machine.letters]
+        moved = map(Word, machine.letters, (at / scale for at, scale in zip(end, scales, strict=True)))
+        made = [*rest, Word("G", 53), Word("G", 1), *moved]
+        self.lines.append(PlainLine(" ".join([*map(str, made), *comments]), place))
 
     def _knows_length(self, codes: set[int], words: Sequence[Word]) -> bool:
         """Whether that of G43 or G43.2 is in the table of tools, and its line changes no tool."""
@@ -258,6 +284,10 @@ class Output:
             self.lines.append(PlainLine(item, place))
             return
         self.lines.append(PlainLine(self._writer.write(item), place))
+
+
+def _is_probe(word: Word) -> bool:
+    return word.letter == "G" and word.code in PROBES
 
 
 def _is_of_table(word: Word) -> bool:
