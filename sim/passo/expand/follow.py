@@ -35,7 +35,7 @@ def follow(lines: Sequence[PlainLine], height_map: HeightMap, options: Options) 
             follower.take(line)
         except GcodeError as error:
             raise ExpandError(
-                line.place, explain(error, words_of(line.text), follower.machine.axes)
+                line.place, explain(error, words_of(line.text), follower.machine.gcode.settings)
             ) from None
     return follower.lines
 
@@ -83,7 +83,7 @@ class _Follower:
         begin = [at + self.added * (axis == Z) for axis, at in enumerate(motion.start)]
         for axis, is_known in zip((*XY, Z), known, strict=True):
             begin[axis] = begin[axis] if is_known else math.inf
-        writer = Writer(XY, begin, whole=False)
+        writer = Writer(machine.letters, XY, begin, whole=False)
         speed = 0.0
         if machine.mode(FEED_MODE) == 930 and not motion.rapid:
             rate = next(word.value for word in words if word.letter == "F")
