@@ -167,7 +167,8 @@ REFUSED = {
     "o1 begin": "1: O: 'begin' is none of elseif, else, endif, endwhile, endrepeat, endsub, sub, call, "
     "return, if, while, do, repeat, break, continue",
     "M99": "1: M99 of the main program repeats it without end: write M2 or M30",
-    "G0 X#5063": "1: word X: #5063 cannot be known while expanding: it is the result of a probe (passo run --surface)",
+    "G0 X#5063": "1: word X: #5063 cannot be known while expanding: "
+    "it is the result of a probe (passo run --surface)",
     "G0 X#<_ini[a]b>": "1: word X: #<_ini[a]b> cannot be known while expanding: only the machine has it",
     "G0 X#1\nG5.1 X1 I1": "2: WORD: G5.1 (LinuxCNC): a spline: let the CAM program write G1, G2 and G3",
     "G0 X#1\nM104 S200": "2: WORD: M104 (RepRap): this is for 3D printers: leave it out",
