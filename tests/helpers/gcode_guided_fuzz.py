@@ -23,7 +23,7 @@ FLAGS = (
 )
 KEPT = paths.build / "fuzz" / "gcode"
 LONGEST = 2000  # bytes of a program
-PATIENCE = 200  # s for a program, by the clock: of a machine that is busy with other work
+PATIENCE = 600  # s for a program, by the clock: of a machine that is busy with other work
 MACHINE = b"\x62\xe0"  # of the examples: three axes, arcs within 4 um; seven inputs
 
 
