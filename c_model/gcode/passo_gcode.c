@@ -47,11 +47,13 @@ void passo_gcode_open(struct passo_gcode *gcode, const struct passo_gcode_settin
 
 void passo_gcode_configure(struct passo_gcode *gcode, const struct passo_gcode_settings *settings)
 {
-	const uint8_t axes = gcode->settings.axes, left_out = gcode->settings.left_out;
+	const struct passo_gcode_settings before = gcode->settings;
 
 	gcode->settings = *settings;
-	gcode->settings.axes = axes;
-	gcode->settings.left_out = left_out;
+	gcode->settings.axes = before.axes;
+#ifndef PASSO_PLAIN_GCODE
+	gcode->settings.left_out = before.left_out;
+#endif
 }
 
 void passo_gcode_set_offsets(struct passo_gcode *gcode, const struct passo_gcode_offsets *offsets)

@@ -301,8 +301,11 @@ enum passo_gcode_error passo_grbl_apply(struct passo_grbl *grbl)
 		    (uint32_t)(settings->value[PASSO_GRBL_SPINDLE_LEAST] / PASSO_GCODE_MILLION),
 		.spindle_maximum = (uint32_t)(settings->value[PASSO_GRBL_SPINDLE] / PASSO_GCODE_MILLION),
 		.laser = passo_grbl_is_on(settings, PASSO_GRBL_LASER),
+#ifndef PASSO_PLAIN_GCODE
 		.inputs = passo->has_inputs ? (uint8_t)(1u + passo_grbl_motors(grbl)) : 0,
-		.power = passo->has_outputs});
+		.power = passo->has_outputs,
+#endif
+	    });
 	enum passo_error error = apply_pins(grbl, timing);
 	if (error == PASSO_OK && passo->has_inputs)
 		error = apply_inputs(grbl);

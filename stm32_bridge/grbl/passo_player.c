@@ -245,8 +245,10 @@ static enum passo_error take_at_rest(struct passo_player *player, enum passo_pla
 	case PASSO_GCODE_DWELL:
 		passo_player_dwell(player);
 		break;
+#ifndef PASSO_PLAIN_GCODE
 	case PASSO_GCODE_INPUT:
-		return PASSO_GCODE_HAS_TOOLS ? passo_player_listen(player, event) : PASSO_OK;
+		return passo_player_listen(player, event);
+#endif
 	case PASSO_GCODE_PAUSE:
 		player->paused = true;
 		*event = PASSO_PLAYER_PAUSED;
