@@ -90,13 +90,21 @@ static bool is_open(const struct passo_path_planner *path, const struct passo_pa
 	    && newest(path)->output == move->output && path->feed == move->feed;
 }
 
+/* Whether a short line goes straight on from the newest one, which is too long to be held back. */
+static bool goes_on(const struct passo_path_planner *path, const struct passo_path_merged *merged)
+{
+	return merged->off < path->tolerance / STRAIGHT
+	    && passo_mul_div(passo_path_clocks(newest(path)), merged->longer, path->at.length)
+	           < path->machine.clock_hz / MERGED_PER_SECOND;
+}
+
 /* Replaces the newest line by one to a new target, if that is not farther off than the tolerance. */
 static bool merge(struct passo_path_planner *path, const struct passo_path_move *move)
 {
 	if (!is_open(path, move))
 		return false;
 	const struct passo_path_merged merged = passo_path_off(path, move->target);
-	if (merged.off >= (path->open ? path->tolerance : path->tolerance / STRAIGHT))
+	if (path->open ? merged.off >= path->tolerance : !goes_on(path, &merged))
 		return false;
 	const struct passo_path_place at = path->at;
 	const uint32_t dwell = path->dwell;

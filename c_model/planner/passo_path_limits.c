@@ -93,6 +93,7 @@ struct passo_path_merged passo_path_off(const struct passo_path_planner *path, c
 	const uint64_t top =
 	    passo_mul_shift(passo_mul_shift(merged.bulge, length, PASSO_PATH_UNIT_BITS), length, 34);
 	merged.off = passo_path_smaller(merged.off, top);
+	merged.longer = length - end->length;
 	return merged;
 }
 

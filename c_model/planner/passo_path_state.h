@@ -119,8 +119,9 @@ struct passo_path_place {
 
 /* By how much a line is off those that it replaces, at most. Both hold. */
 struct passo_path_merged {
-	uint64_t off;   /* UQ32.16 substeps */
-	uint64_t bulge; /* UQ.46 per substep: this times the distances to both of its ends */
+	uint64_t off;    /* UQ32.16 substeps */
+	uint64_t bulge;  /* UQ.46 per substep: this times the distances to both of its ends */
+	uint64_t longer; /* than the last of them, UQ32.16 substeps */
 };
 
 /* All members are private. Items are counted from 0 and never wrap within a motion. */
