@@ -4,6 +4,7 @@
 It prints four decimals of the units in force, so its figures are exact to a few of the last one.
 """
 
+import math
 import os
 import re
 import subprocess
@@ -25,6 +26,7 @@ INCH = 25.4
 SECONDS = 20
 TOOLS = 100  # with diameters of as many hundredths of an inch
 LOWEST = 0.1 * INCH  # mm/min: it may raise lower feeds of G93
+FULL = 1000  # rpm, as in gcode_passo.py
 TURNS = {"START_SPINDLE_CLOCKWISE": 1, "START_SPINDLE_COUNTERCLOCKWISE": -1, "STOP_SPINDLE_TURNING": 0}
 
 
@@ -61,6 +63,7 @@ def play_rs274(program: Sequence[str]) -> Played:
 
 def _motions(calls: Sequence[str]) -> Iterator[Motion]:
     scale, unit, feed, outputs, plane, tolerance = 1.0, 1.0, 0.0, Outputs(), "XY", 0.0
+    speed, highest, per_turn = 0.0, 0.0, False  # S; D of G96, 0 in G97; G95
     offsets = {name: np.zeros(3) for name in ("SET_G5X_OFFSET", "SET_G92_OFFSET", "USE_TOOL_LENGTH_OFFSET")}
     for line in calls:
         if not (call := CALL.match(line)):
@@ -68,7 +71,12 @@ def _motions(calls: Sequence[str]) -> Iterator[Motion]:
         label, name, text = int(call[1]) if call[1].isdigit() else 0, call[2], call[3]
         numbers = [float(n) for n in re.findall(r"-?\d+\.?\d*", text)] if name != "COMMENT" else []
         origin = np.sum(list(offsets.values()), axis=0)
+        if highest and name.startswith("STRAIGHT"):
+            around = 2 * math.pi * abs(numbers[0]) * scale
+            surface = speed * (304.8 if scale == INCH else 1000)
+            outputs = replace(outputs, rpm=min(FULL, highest, surface / around if around else FULL))
         made = Motion(label, outputs=outputs, tolerance=tolerance, unit=unit)
+        minutely = feed * outputs.rpm if per_turn else feed
         match name:
             case "USE_LENGTH_UNITS":
                 scale = INCH if "INCHES" in text else 1.0
@@ -79,6 +87,11 @@ def _motions(calls: Sequence[str]) -> Iterator[Motion]:
                 tolerance = numbers[0] * scale
             case "SET_MOTION_CONTROL_MODE":  # G61: without the call above
                 tolerance = 0.0
+            case "SET_FEED_MODE":
+                per_turn = numbers[1] > 0
+            case "SET_SPINDLE_MODE":
+                highest = numbers[1]
+                outputs = replace(outputs, rpm=speed)
             case "SELECT_PLANE":
                 plane = text[-2:]
             case "SET_G5X_OFFSET":
@@ -87,18 +100,19 @@ def _motions(calls: Sequence[str]) -> Iterator[Motion]:
                 offsets[name] = np.array(numbers[:3]) * scale
             case "STRAIGHT_TRAVERSE" | "STRAIGHT_FEED":
                 end = tuple((np.array(numbers[:3]) * scale + origin).tolist())
-                yield replace(made, end=end, feed=feed if name == "STRAIGHT_FEED" else 0)
+                yield replace(made, end=end, feed=minutely if name == "STRAIGHT_FEED" else 0)
             case "ARC_FEED":
                 axes = PLANES[plane]
                 end_of = dict(zip(axes, (numbers[0], numbers[1], numbers[5]), strict=True))
                 end = tuple(end_of[axis] * scale + origin[axis] for axis in range(3))
                 center = tuple(numbers[2 + i] * scale + origin[axes[i]] for i in range(2))
                 turns = {"plane": axes, "clockwise": numbers[4] < 0}
-                yield replace(made, end=end, feed=feed, center=center, **turns)
+                yield replace(made, end=end, feed=minutely, center=center, **turns)
             case "DWELL":
                 yield replace(made, dwell=numbers[0])
             case "SET_SPINDLE_SPEED":
-                outputs = replace(outputs, rpm=numbers[1])
+                speed = numbers[1]
+                outputs = replace(outputs, rpm=speed)
             case "START_SPINDLE_CLOCKWISE" | "START_SPINDLE_COUNTERCLOCKWISE" | "STOP_SPINDLE_TURNING":
                 outputs = replace(outputs, turns=TURNS[name])
             case "FLOOD_ON" | "FLOOD_OFF":
