@@ -14,10 +14,11 @@ from benchmarks.gcode_rs274 import LOWEST
 
 LINES = 40
 # What changes the meaning of the words that a cycle in force has kept, or where its row began.
-SHIFTS = {"G10", "G17", "G18", "G19", "G20", "G21", "G28", "G30", "G43.1", "G49", "G54", "G55", "G59",
-          "G61", "G61.1", "G64", "G90", "G91", "G92", "G92.1"}  # fmt: skip
+SHIFTS = {"G7", "G8", "G10", "G17", "G18", "G19", "G20", "G21", "G28", "G30", "G43.1", "G49", "G54", "G55",
+          "G59", "G61", "G61.1", "G64", "G90", "G91", "G92", "G92.1"}  # fmt: skip
 PLANES = {"G17": "XYZ", "G18": "ZXY", "G19": "YZX"}
-MOTION, PLANE, UNITS, DISTANCE, FEED_MODE, PATH = 0, 2, 3, 4, 5, 6  # enum passo_gcode_group
+# enum passo_gcode_group
+MOTION, PLANE, UNITS, DISTANCE, FEED_MODE, PATH, DIAMETER = 0, 2, 3, 4, 5, 6, 12
 
 
 def number(rng: random.Random, low: float, high: float) -> str:
@@ -94,6 +95,11 @@ class Programs:
         start = [0.0 if incremental else self.place("XYZ".index(letter)) for letter in plane]
         return self.rng.choice(("G2", "G3", "G02", "G03")), list(plane), start
 
+    def word(self, letter: str, at: float, digits: int) -> str:
+        """A word of an axis; of a diameter after G7."""
+        twice = letter == "X" and self.passo.gcode.c.mode[DIAMETER] == 70
+        return f"{letter}{2 * at if twice else at:.{digits}f}"
+
     def arc(self) -> str:
         """About a center: any sweep, sometimes a helix, a full circle, or one that does not close."""
         rng = self.rng
@@ -111,7 +117,7 @@ class Programs:
             apart = 1 + rng.choice((0.0001, 0.5, 2)) / true
             place = [start[i] + offset[i] + (place[i] - start[i] - offset[i]) * apart for i in range(2)]
         closed = place == start[:2] and rng.random() < 0.5
-        words = [] if closed else [f"{letter}{at:.6f}" for letter, at in zip(letters, place, strict=False)]
+        words = [] if closed else [self.word(*at, 6) for at in zip(letters, place, strict=False)]
         words += [f"{'IJK'['XYZ'.index(letter)]}{o:.4f}" for letter, o in zip(letters, offset, strict=False)]
         if rng.random() < 0.3:
             words.append(f"{letters[2]}{start[2] + rng.uniform(-5, 5):.3f}")
@@ -123,9 +129,9 @@ class Programs:
         command, letters, start = self.turn()
         way = [rng.uniform(-20, 20), rng.uniform(-20, 20)]
         size = math.hypot(*way) / 2 * rng.choice((0.9, 1.001, 1.2, 3))
-        words = [f"{letter}{start[i] + way[i]:.4f}" for i, letter in enumerate(letters[:2])]
+        words = [self.word(letter, start[i] + way[i], 4) for i, letter in enumerate(letters[:2])]
         if rng.random() < 0.2:
-            words.append(f"{letters[2]}{start[2] + rng.uniform(-5, 5):.3f}")
+            words.append(self.word(letters[2], start[2] + rng.uniform(-5, 5), 3))
         return f"{command} {' '.join(words)} R{size * rng.choice((1, 1, -1)):.4f}{self.feed()}"
 
     def cycle(self) -> str:
@@ -141,7 +147,7 @@ class Programs:
         level = rng.uniform(-9, 3) + (0 if incremental else high)
         bottom = (0 if incremental else level) - rng.uniform(0.5, 9)
         kind = rng.choice(("G73", "G81", "G82", "G83", "G85", "G89"))
-        words = [kind, places, f"{letters[2]}{bottom:.3f}", f"R{level:.3f}", f"F{positive(rng, 3000)}"]
+        words = [kind, places, self.word(letters[2], bottom, 3), f"R{level:.3f}", f"F{positive(rng, 3000)}"]
         words += [f"Q{rng.uniform(0.3, 5):.3f}7"] if kind in ("G73", "G83") else []  # no whole pecks
         words += [f"P{positive(rng, 2)}"] if kind in ("G82", "G89") else []
         words += [f"L{rng.randint(1, 3)}"] if rng.random() < 0.3 else []
@@ -154,7 +160,7 @@ class Programs:
             ("G17", "G18", "G19"), ("G20", "G21"), ("G90", "G91"), ("G93", "G94", "G94"),
             ("G54", "G55", "G59"),
             ("G61", "G61.1", "G64", "G64 P0.05", "G64 P0.1 Q0.02"), ("G40",), ("G91.1",), ("G80",),
-            ("M3", "M4", "M5"), ("M7", "M8", "M9"), (f"S{positive(rng, 900)}",),
+            ("G7", "G8"), ("M3", "M4", "M5"), ("M7", "M8", "M9"), (f"S{positive(rng, 900)}",),
         )  # fmt: skip
         chosen = [rng.choice(group) for group in rng.sample(groups, rng.choice((1, 1, 2)))]
         moves = "G80" not in chosen and rng.random() < 0.2

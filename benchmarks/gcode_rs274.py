@@ -4,6 +4,7 @@
 It prints four decimals of the units in force, so its figures are exact to a few of the last one.
 """
 
+import math
 import os
 import re
 import subprocess
@@ -25,6 +26,7 @@ INCH = 25.4
 SECONDS = 20
 TOOLS = 100  # with diameters of as many hundredths of an inch
 LOWEST = 0.1 * INCH  # mm/min: it may raise lower feeds of G93
+FULL = 1000  # rpm, as in gcode_passo.py
 TURNS = {"START_SPINDLE_CLOCKWISE": 1, "START_SPINDLE_COUNTERCLOCKWISE": -1, "STOP_SPINDLE_TURNING": 0}
 
 
@@ -66,6 +68,7 @@ def _position(numbers: Sequence[float], scale: float) -> np.ndarray:
 
 def _motions(calls: Sequence[str]) -> Iterator[Motion]:
     scale, unit, feed, outputs, plane, tolerance = 1.0, 1.0, 0.0, Outputs(), "XY", 0.0
+    speed, highest, per_turn = 0.0, 0.0, False  # S; D of G96, 0 in G97; G95
     offsets = {
         name: np.zeros(AXES) for name in ("SET_G5X_OFFSET", "SET_G92_OFFSET", "USE_TOOL_LENGTH_OFFSET")
     }
@@ -75,7 +78,12 @@ def _motions(calls: Sequence[str]) -> Iterator[Motion]:
         label, name, text = int(call[1]) if call[1].isdigit() else 0, call[2], call[3]
         numbers = [float(n) for n in re.findall(r"-?\d+\.?\d*", text)] if name != "COMMENT" else []
         origin = np.sum(list(offsets.values()), axis=0)
+        if highest and name.startswith("STRAIGHT"):
+            around = 2 * math.pi * abs(numbers[0]) * scale
+            surface = speed * (304.8 if scale == INCH else 1000)
+            outputs = replace(outputs, rpm=min(FULL, highest, surface / around if around else FULL))
         made = Motion(label, outputs=outputs, tolerance=tolerance, unit=unit)
+        minutely = feed * outputs.rpm if per_turn else feed
         match name:
             case "USE_LENGTH_UNITS":
                 scale = INCH if "INCHES" in text else 1.0
@@ -86,6 +94,11 @@ def _motions(calls: Sequence[str]) -> Iterator[Motion]:
                 tolerance = numbers[0] * scale
             case "SET_MOTION_CONTROL_MODE":  # G61: without the call above
                 tolerance = 0.0
+            case "SET_FEED_MODE":
+                per_turn = numbers[1] > 0
+            case "SET_SPINDLE_MODE":
+                highest = numbers[1]
+                outputs = replace(outputs, rpm=speed)
             case "SELECT_PLANE":
                 plane = text[-2:]
             case "SET_G5X_OFFSET":
@@ -96,7 +109,7 @@ def _motions(calls: Sequence[str]) -> Iterator[Motion]:
                 end = tuple((_position(numbers, scale) + origin).tolist())
                 probes = name == "STRAIGHT_PROBE"
                 rapid = name == "STRAIGHT_TRAVERSE"
-                yield replace(made, end=end, feed=0 if rapid else feed, probes=probes)
+                yield replace(made, end=end, feed=0 if rapid else minutely, probes=probes)
             case "ARC_FEED":
                 axes = PLANES[plane]
                 end_of = dict(zip(axes, (numbers[0], numbers[1], numbers[5]), strict=True))
@@ -104,11 +117,12 @@ def _motions(calls: Sequence[str]) -> Iterator[Motion]:
                 end = tuple((_position(linear + numbers[6:], scale) + origin).tolist())
                 center = tuple(numbers[2 + i] * scale + origin[axes[i]] for i in range(2))
                 turns = {"plane": axes, "clockwise": numbers[4] < 0}
-                yield replace(made, end=end, feed=feed, center=center, **turns)
+                yield replace(made, end=end, feed=minutely, center=center, **turns)
             case "DWELL":
                 yield replace(made, dwell=numbers[0])
             case "SET_SPINDLE_SPEED":
-                outputs = replace(outputs, rpm=numbers[1])
+                speed = numbers[1]
+                outputs = replace(outputs, rpm=speed)
             case "START_SPINDLE_CLOCKWISE" | "START_SPINDLE_COUNTERCLOCKWISE" | "STOP_SPINDLE_TURNING":
                 outputs = replace(outputs, turns=TURNS[name])
             case "FLOOD_ON" | "FLOOD_OFF":

@@ -35,7 +35,7 @@ IMAGES = {
     "both CB": ("CHIP=cb",),
 }
 PC = "PC"
-EXPANDED = ("G41", "G41.1", "G42", "G42.1", "D", "M98", "M99", "O", "#", "[")  # by passo expand and passo run
+EXPANDED = ("G41", "G41.1", "G42", "G42.1", "M98", "M99", "O", "#", "[")  # by passo expand and passo run
 MARKS = {True: "x", False: ""}
 SOURCE_OF_WORDS = "c_model/gcode/passo_gcode_block.c"
 ERRORS = Path("c_model/gcode/passo_gcode_error")

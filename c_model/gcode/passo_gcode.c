@@ -18,6 +18,10 @@ const passo_gcode_command PASSO_GCODE_POWER_UP[PASSO_GCODE_MODES] = {
     [PASSO_GCODE_ARC_DISTANCE] = 911,
     [PASSO_GCODE_SPINDLE] = 50,
     [PASSO_GCODE_RETRACT] = 980,
+#ifndef PASSO_PLAIN_GCODE
+    [PASSO_GCODE_DIAMETER] = 80,
+    [PASSO_GCODE_SURFACE] = 970,
+#endif
 };
 
 void passo_gcode_copy(const struct passo_gcode *gcode, const int64_t *from, int64_t *to)
@@ -71,6 +75,7 @@ void passo_gcode_reset(struct passo_gcode *gcode)
 #ifndef PASSO_PLAIN_GCODE
 	gcode->digital = 0;
 	gcode->power = PASSO_GCODE_POWER_OF_SPINDLE;
+	gcode->surface = gcode->fastest = 0;
 #endif
 	gcode->tool_length = gcode->feed = gcode->spindle = 0;
 	gcode->tolerance = 0;
@@ -179,8 +184,14 @@ static void accept(struct passo_gcode *gcode, const struct passo_gcode_check *ch
 	if (block->words & PASSO_GCODE_WORD('N'))
 		gcode->line = (uint32_t)(block->value['N' - 'A'] / PASSO_GCODE_MILLION);
 	accept_tool(gcode, check);
+#ifdef PASSO_PLAIN_GCODE
 	if (block->words & PASSO_GCODE_WORD('S'))
 		gcode->spindle = block->value['S' - 'A'];
+#else
+	gcode->spindle = check->spindle;
+	gcode->surface = check->surface;
+	gcode->fastest = check->fastest;
+#endif
 	gcode->feed = check->feed;
 	gcode->tolerance = check->tolerance;
 	gcode->drill = check->drill;

@@ -117,6 +117,11 @@ struct passo_gcode_job {
 	uint64_t microseconds;
 	uint64_t feed;                              /* UQ32.32 mm/s, or PASSO_PATH_RAPID */
 	passo_gcode_position stopover, destination; /* machine coordinates */
+#ifndef PASSO_PLAIN_GCODE
+	passo_gcode_position from; /* where the motion begins */
+	int64_t at;                /* X at the end of the last action */
+	bool per_turn;             /* the feed is that of G95 */
+#endif
 	union {
 		struct passo_gcode_arc arc;     /* if it turns */
 		struct passo_gcode_cycle cycle; /* if it drills */
@@ -138,11 +143,15 @@ struct passo_gcode {
 	int64_t tool_length;            /* G43, G43.1, G43.2 */
 	struct passo_gcode_drill drill; /* of the cycle in force */
 	uint64_t tolerance;             /* of G61 and G64 */
-	int64_t feed;                   /* nm/min; 0: none yet */
-	int64_t spindle;                /* millionths of rpm */
-	uint32_t line;                  /* N of the last line that had one */
-	uint8_t tool;                   /* T: the next one */
-	uint8_t loaded;                 /* the one in the spindle; 0: none */
+	int64_t feed;                   /* nm/min, after G95 nm per revolution; 0: none yet */
+	int64_t spindle;                /* millionths of rpm, of G97 */
+#ifndef PASSO_PLAIN_GCODE
+	int64_t surface; /* nm/min, of G96 */
+	int64_t fastest; /* its limit, millionths of rpm; 0: none */
+#endif
+	uint32_t line;           /* N of the last line that had one */
+	uint8_t tool;            /* T: the next one */
+	uint8_t loaded;          /* the one in the spindle; 0: none */
 	uint8_t spindle_percent; /* override of S: may be set by the caller, for the following actions */
 	struct passo_gcode_job job;
 };

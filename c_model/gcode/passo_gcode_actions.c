@@ -4,18 +4,35 @@
 #include "passo_gcode_private.h"
 #include "passo_math.h"
 
+static uint64_t full_speed(const struct passo_gcode *gcode)
+{
+	return (uint64_t)gcode->settings.spindle_maximum * PASSO_GCODE_MILLION;
+}
+
+uint64_t passo_gcode_speed(const struct passo_gcode *gcode, int64_t wanted)
+{
+	const uint64_t own = passo_mul_div((uint64_t)wanted, gcode->spindle_percent, 100);
+	const uint64_t least = own > 0 ? (uint64_t)gcode->settings.spindle_minimum * PASSO_GCODE_MILLION : 0;
+	const uint64_t turning = own > least ? own : least, full = full_speed(gcode);
+
+	return turning < full || full == 0 ? turning : full;
+}
+
 uint32_t passo_gcode_output(const struct passo_gcode *gcode)
 {
-	const uint32_t maximum = gcode->settings.spindle_maximum;
+#ifdef PASSO_PLAIN_GCODE
+	return passo_gcode_output_at(gcode, gcode->spindle);
+#else
+	return passo_gcode_output_at(gcode, passo_gcode_wanted_speed(gcode, gcode->position[0]));
+#endif
+}
+
+uint32_t passo_gcode_output_at(const struct passo_gcode *gcode, int64_t wanted)
+{
 	uint32_t output = 0;
 
 	if (gcode->mode[PASSO_GCODE_SPINDLE] != PASSO_GCODE_M(5)) {
-		const uint64_t full = (uint64_t)maximum * PASSO_GCODE_MILLION;
-		const uint64_t wanted = passo_mul_div((uint64_t)gcode->spindle, gcode->spindle_percent, 100);
-		const uint64_t least =
-		    wanted > 0 ? (uint64_t)gcode->settings.spindle_minimum * PASSO_GCODE_MILLION : 0;
-		const uint64_t turning = wanted > least ? wanted : least;
-		const uint64_t speed = turning < full ? turning : full;
+		const uint64_t full = full_speed(gcode), speed = passo_gcode_speed(gcode, wanted);
 		const uint32_t reverse =
 		    gcode->settings.laser ? PASSO_GCODE_OUTPUT_PROPORTIONAL : PASSO_GCODE_OUTPUT_REVERSE;
 
@@ -111,6 +128,18 @@ static bool next_of_motion(struct passo_gcode *gcode, struct passo_gcode_action 
 	return true;
 }
 
+/* The same of a lathe. */
+static bool next_of_turning(struct passo_gcode *gcode, struct passo_gcode_action *action)
+{
+	const bool there = next_of_motion(gcode, action);
+
+#ifndef PASSO_PLAIN_GCODE
+	if (there)
+		passo_gcode_turn(gcode, action);
+#endif
+	return there;
+}
+
 bool passo_gcode_next(struct passo_gcode *gcode, struct passo_gcode_action *action)
 {
 	struct passo_gcode_job *job = &gcode->job;
@@ -146,7 +175,7 @@ bool passo_gcode_next(struct passo_gcode *gcode, struct passo_gcode_action *acti
 		action->feed = PASSO_PATH_RAPID;
 		passo_gcode_copy(gcode, job->stopover, action->target);
 	} else if (job->motion) {
-		if (!next_of_motion(gcode, action))
+		if (!next_of_turning(gcode, action))
 			return passo_gcode_next(gcode, action);
 	} else if (take(&job->pause)) {
 		action->kind = PASSO_GCODE_PAUSE;

@@ -4,7 +4,7 @@
  * Numbers are exact in millionths: millimeters become nanometers, seconds microseconds.
  *
  * PASSO_PLAIN_GCODE, for the flash of a small controller: no tool change, no tool table, no inputs and
- * outputs of the user; their words are refused. No axis is left out.
+ * outputs of the user, none of a lathe (passo_gcode_lathe.c); their words are refused. No axis is left out.
  */
 #ifndef PASSO_GCODE_BLOCK_H
 #define PASSO_GCODE_BLOCK_H
@@ -27,17 +27,21 @@ enum passo_gcode_group {
 	PASSO_GCODE_PLANE,        /* G17-19 */
 	PASSO_GCODE_UNITS,        /* G20 G21 */
 	PASSO_GCODE_DISTANCE,     /* G90 G91 */
-	PASSO_GCODE_FEED_MODE,    /* G93 G94 */
+	PASSO_GCODE_FEED_MODE,    /* G93 G94 G95 */
 	PASSO_GCODE_PATH,         /* G61 G61.1 G64 */
 	PASSO_GCODE_TOOL_LENGTH,  /* G43 G43.1 G43.2 G49 */
 	PASSO_GCODE_CUTTER,       /* G40 */
 	PASSO_GCODE_ARC_DISTANCE, /* G91.1 */
 	PASSO_GCODE_SPINDLE,      /* M3 M4 M5 */
 	PASSO_GCODE_RETRACT,      /* G98 G99 */
-	PASSO_GCODE_COMMAND,      /* G4 G10 G28 G28.1 G30 G30.1 G53 G92 G92.1 */
-	PASSO_GCODE_COOLANT,      /* M7 M8 M9 */
-	PASSO_GCODE_PROGRAM,      /* M0 M1 M2 M30 */
-	PASSO_GCODE_TOOL_CHANGE,  /* M6 M61 */
+#ifndef PASSO_PLAIN_GCODE
+	PASSO_GCODE_DIAMETER, /* G7 G8 */
+	PASSO_GCODE_SURFACE,  /* G96 G97 */
+#endif
+	PASSO_GCODE_COMMAND,     /* G4 G10 G28 G28.1 G30 G30.1 G53 G92 G92.1 */
+	PASSO_GCODE_COOLANT,     /* M7 M8 M9 */
+	PASSO_GCODE_PROGRAM,     /* M0 M1 M2 M30 */
+	PASSO_GCODE_TOOL_CHANGE, /* M6 M61 */
 #ifndef PASSO_PLAIN_GCODE
 	PASSO_GCODE_PORT, /* M62-68 */
 #endif

@@ -34,8 +34,14 @@ static int64_t from_inches(int64_t value)
 int64_t passo_gcode_length_of(const struct passo_gcode_check *check, char letter)
 {
 	const int64_t value = value_of(check, letter);
+	const int64_t length =
+	    check->mode[PASSO_GCODE_UNITS] == PASSO_GCODE_G(20, 0) ? from_inches(value) : value;
 
-	return check->mode[PASSO_GCODE_UNITS] == PASSO_GCODE_G(20, 0) ? from_inches(value) : value;
+#ifndef PASSO_PLAIN_GCODE
+	if (letter == 'X' && check->mode[PASSO_GCODE_DIAMETER] == PASSO_GCODE_G(7, 0))
+		return (length + (length > 0)) / 2; /* a diameter */
+#endif
+	return length;
 }
 
 bool passo_gcode_has_axis(const struct passo_gcode_check *check, unsigned axis)
@@ -89,7 +95,12 @@ static enum passo_gcode_error check_line_number(struct passo_gcode_check *check)
 	return PASSO_GCODE_OK;
 }
 
-/* In G93 each line that moves at a feed has its own; G94 keeps it, but not that of G93. */
+static bool is_per_turn(passo_gcode_command feed_mode)
+{
+	return feed_mode == PASSO_GCODE_G(95, 0);
+}
+
+/* In G93 each line that moves at a feed has its own; G94 and G95 keep it, but not that of another mode. */
 static enum passo_gcode_error check_feed(struct passo_gcode_check *check)
 {
 	const passo_gcode_command motion = check->mode[PASSO_GCODE_MOTION];
@@ -100,7 +111,11 @@ static enum passo_gcode_error check_feed(struct passo_gcode_check *check)
 			return PASSO_GCODE_NO_FEED;
 		check->inverse = given ? value_of(check, 'F') : 0;
 	} else {
-		check->feed = given ? passo_gcode_length_of(check, 'F') : check->gcode->feed;
+		const passo_gcode_command before = check->gcode->mode[PASSO_GCODE_FEED_MODE];
+		const bool changes = PASSO_GCODE_HAS_TOOLS
+		                  && is_per_turn(check->mode[PASSO_GCODE_FEED_MODE]) != is_per_turn(before);
+
+		check->feed = given ? passo_gcode_length_of(check, 'F') : changes ? 0 : check->gcode->feed;
 	}
 	return PASSO_GCODE_OK;
 }
@@ -224,6 +239,10 @@ static enum passo_gcode_error check_tool(struct passo_gcode_check *check)
 	if (passo_gcode_take(check, 'T') && whole_of(check, 'T') > TOOL_MAX)
 		return PASSO_GCODE_TOOL;
 	enum passo_gcode_error error = check_change(check);
+#ifndef PASSO_PLAIN_GCODE
+	if (error == PASSO_GCODE_OK)
+		error = passo_gcode_check_spindle(check);
+#endif
 	if (error == PASSO_GCODE_OK)
 		error = check_port(check);
 	check->tool_length = length == PASSO_GCODE_G(49, 0) ? 0 : check->gcode->tool_length;

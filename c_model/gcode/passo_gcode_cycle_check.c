@@ -120,7 +120,7 @@ enum passo_gcode_error passo_gcode_check_cycle(struct passo_gcode_check *check)
 	    .plane = plane,
 	};
 	if (check->gcode->settings.axes < CYCLE_AXES || !passo_gcode_is_linear(check->gcode, CYCLE_AXES - 1u)
-	    || check->mode[PASSO_GCODE_FEED_MODE] != PASSO_GCODE_G(94, 0))
+	    || check->mode[PASSO_GCODE_FEED_MODE] == PASSO_GCODE_G(93, 0))
 		return PASSO_GCODE_UNSUPPORTED;
 	if (check->axis_words == 0)
 		return PASSO_GCODE_NO_AXIS_WORDS;

@@ -72,6 +72,8 @@ const char *passo_gcode_error_text(enum passo_gcode_error error)
 		return "unused word: no command of the line takes it";
 	case PASSO_GCODE_TOOL_AXIS:
 		return "tool lengths are those of Z alone";
+	case PASSO_GCODE_SPINDLE_STOPPED:
+		return "the motion needs a spindle that turns: M3 or M4, and S";
 	case PASSO_GCODE_TOOL_LENGTH_UNKNOWN:
 		return "no tool length could be measured";
 	case PASSO_GCODE_NO_PORT:

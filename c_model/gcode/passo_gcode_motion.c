@@ -139,15 +139,21 @@ static uint64_t length_of(const struct passo_gcode_check *check)
 	return passo_isqrt128(sum);
 }
 
-/* UQ32.32 mm/s of nm/min or, in G93, of the whole length in 1 / F minutes. */
+uint64_t passo_gcode_feed(uint64_t per_minute)
+{
+	const uint64_t feed = passo_mul_div(per_minute, UINT64_C(1) << 32, MICROSECONDS_PER_MINUTE);
+
+	return feed == 0 ? 1 : feed == PASSO_PATH_RAPID ? feed - 1 : feed;
+}
+
+/* Of nm/min or, in G93, of the whole length in 1 / F minutes. */
 static uint64_t feed_of(const struct passo_gcode_check *check)
 {
 	uint64_t per_minute = (uint64_t)check->feed;
 
 	if (check->mode[PASSO_GCODE_FEED_MODE] == PASSO_GCODE_G(93, 0))
 		per_minute = passo_mul_div(length_of(check), (uint64_t)check->inverse, PASSO_GCODE_MILLION);
-	const uint64_t feed = passo_mul_div(per_minute, UINT64_C(1) << 32, MICROSECONDS_PER_MINUTE);
-	return feed > 0 ? feed : 1;
+	return passo_gcode_feed(per_minute);
 }
 
 enum passo_gcode_error passo_gcode_check_motion(struct passo_gcode_check *check)
@@ -165,6 +171,15 @@ enum passo_gcode_error passo_gcode_check_motion(struct passo_gcode_check *check)
 		return PASSO_GCODE_OK;
 	if (motion != 0 && check->feed == 0 && check->inverse == 0)
 		return PASSO_GCODE_NO_FEED;
+#ifndef PASSO_PLAIN_GCODE
+	passo_gcode_copy(check->gcode, check->gcode->position, job->from);
+	job->at = job->from[0];
+	job->per_turn = motion != 0 && check->mode[PASSO_GCODE_FEED_MODE] == PASSO_GCODE_G(95, 0);
+	if (job->per_turn)
+		error = passo_gcode_check_turning(check);
+	if (error != PASSO_GCODE_OK)
+		return error;
+#endif
 	error = passo_gcode_find_target(check, job->destination);
 	if (error != PASSO_GCODE_OK)
 		return error;

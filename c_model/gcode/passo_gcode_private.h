@@ -23,6 +23,7 @@ struct passo_gcode_check {
 #ifndef PASSO_PLAIN_GCODE
 	uint8_t digital; /* the output of M62 to M65, as a bit */
 	uint32_t power;  /* of M67 and M68 */
+	int64_t spindle, surface, fastest;
 #endif
 	struct passo_gcode_drill drill;
 	unsigned system;          /* that is set by G10 L2, L20 */
@@ -57,6 +58,20 @@ bool passo_gcode_is_arc(passo_gcode_command motion);
 bool passo_gcode_is_cycle(passo_gcode_command motion);
 enum passo_gcode_error passo_gcode_check_cycle(struct passo_gcode_check *check);
 struct passo_gcode_plane passo_gcode_plane_of(const struct passo_gcode_check *check);
+#ifndef PASSO_PLAIN_GCODE
+/* The words of a lathe: S, D, G95, G96, G97. */
+enum passo_gcode_error passo_gcode_check_spindle(struct passo_gcode_check *check);
+enum passo_gcode_error passo_gcode_check_turning(const struct passo_gcode_check *check);
+/* Millionths of rpm that the program asks for with X at a machine coordinate. */
+int64_t passo_gcode_wanted_speed(const struct passo_gcode *gcode, int64_t x);
+/* Output and feed of an action of a motion, and the target of its next piece. */
+void passo_gcode_turn(struct passo_gcode *gcode, struct passo_gcode_action *action);
+#endif
+/* Millionths of rpm that the spindle has when so much is wanted, and the output word. */
+uint64_t passo_gcode_speed(const struct passo_gcode *gcode, int64_t wanted);
+uint32_t passo_gcode_output_at(const struct passo_gcode *gcode, int64_t wanted);
+/* UQ32.32 mm/s, at least 1, of nm/min. */
+uint64_t passo_gcode_feed(uint64_t per_minute);
 /* The target of the axis words. Error: TARGET. */
 enum passo_gcode_error passo_gcode_find_target(const struct passo_gcode_check *check, int64_t *target);
 

@@ -24,6 +24,7 @@ RELEASE = 2.9  # of LinuxCNC, whose language this is
 # Modal groups of enum passo_gcode_group.
 MOTION, SYSTEM, PLANE, UNITS = "MOTION", "SYSTEM", "PLANE", "UNITS"
 DISTANCE, FEED_MODE, SPINDLE, RETRACT = "DISTANCE", "FEED_MODE", "SPINDLE", "RETRACT"
+SURFACE = "SURFACE"
 LINES_AND_ARCS = (0, 10, 20, 30)
 CYCLES = (730, 760, *range(810, 900, 10))
 RAPID = (1 << 64) - 1
@@ -71,6 +72,7 @@ class Machine:
         self.gcode = Gcode(settings)
         set_tool_lengths(self.gcode.c, lengths(tools))
         self.compensation: int = 400
+        self.diameters = False  # G7
         self.tool: int | None = 0 if at_zero else None
         self.probed: tuple[tuple[float, ...], bool] | None = None  # mm and work coordinates; touched
         self.input: float | None = 0.0 if at_zero else None
@@ -245,11 +247,11 @@ class Machine:
             "_inverse_time": self.mode(FEED_MODE) == 930,
             "_units_per_minute": self.mode(FEED_MODE) == 940, "_units_per_rev": self.mode(FEED_MODE) == 950,
             "_coord_system": system, "_tool_offset": c.tool_length != 0, "_ijk_absolute_mode": 0,
-            "_lathe_diameter_mode": 0, "_lathe_radius_mode": 1,
-            "_spindle_rpm_mode": 1, "_spindle_css_mode": 0,
+            "_lathe_diameter_mode": self.diameters, "_lathe_radius_mode": not self.diameters,
+            "_spindle_rpm_mode": self.mode(SURFACE) == 970, "_spindle_css_mode": self.mode(SURFACE) == 960,
             "_spindle_on": spindle in (30, 40), "_spindle_cw": spindle == 30,
             "_mist": c.mist, "_flood": c.flood,
-            "_feed": c.feed / NANOMETERS / (self.scale if self.mode(FEED_MODE) == 940 else 1.0),
+            "_feed": c.feed / NANOMETERS / (self.scale if self.mode(FEED_MODE) != 930 else 1.0),
             "_retract_old_z": self.mode(RETRACT) == 980, "_retract_r_plane": self.mode(RETRACT) == 990,
             "_rpm": c.spindle / 1e6, "_selected_tool": c.tool, "_selected_pocket": c.tool, "_remap_level": 0,
         }  # fmt: skip

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from passo.expand.block import Word
 from passo.expand.compensation import Compensation, Step
 from passo.expand.height_map import HeightMap
+from passo.expand.lathe import Said, plain
 from passo.expand.machine import CYCLES, FEED_MODE, LINES_AND_ARCS, MOTION, PLANE, SYSTEM, Machine, Motion
 from passo.expand.place import ExpandError, LineError, Place
 from passo.expand.refusals import explain
@@ -47,6 +48,10 @@ class Output:
 
     def take(self, text: str, words: Sequence[Word], comments: Sequence[str], place: Place) -> None:
         """A line as text, and its words; raises ExpandError."""
+        for line in plain(Said(text, words, comments), self.machine):
+            self._take(*line, place)
+
+    def _take(self, text: str, words: Sequence[Word], comments: Sequence[str], place: Place) -> None:
         codes = {word.code for word in words if word.letter == "G"}
         if codes & FROM_TABLE and self._knows_length(codes, words):
             units = [word for word in words if word.letter == "G" and word.code in UNITS]

@@ -11,7 +11,6 @@ UNUSED, NO_PORT = 36, 39
 # By the command in tenths, or a range of them: norm, and what to do.
 ADVICE: tuple[tuple[str, range, str, str], ...] = (
     ("G", range(50, 54), "LinuxCNC", "a spline: let the CAM program write G1, G2 and G3"),
-    ("G", range(70, 90), "LinuxCNC", "lathe: write radii, without G7 and G8"),
     ("G", range(101, 102), "LinuxCNC", "edit the tool table instead"),
     ("G", range(171, 192), "LinuxCNC", "there are no axes U V W"),
     ("G", range(330, 332), "LinuxCNC", "threading needs a spindle in step"),
@@ -22,7 +21,6 @@ ADVICE: tuple[tuple[str, range, str, str], ...] = (
     ("G", range(740, 900), "NIST", "let the CAM program write out the cycle"),
     ("G", range(901, 902), "LinuxCNC", "write I J K as increments"),
     ("G", range(920, 924), "NIST", "G92 and G92.1 are taken"),
-    ("G", range(950, 980), "LinuxCNC", "write F in units per minute and S in rpm: G94"),
     ("M", range(190, 200), "LinuxCNC", "the spindle cannot be oriented"),
     ("M", range(480, 540), "NIST, LinuxCNC", "overrides are the sender's: leave it out"),
     ("M", range(600, 610), "NIST", "pause with M0"),
