@@ -32,7 +32,7 @@ NOT_TAKEN = ("error:20", "error:23")
 PAUSE = "M0"
 EXPANDED = {
     "G41": "G41 D1 G1 X1\nG40", "G41.1": "G41.1 D.1\nG1 X1\nG40", "G42": "G42 D1 G1 X1\nG40",
-    "G42.1": "G42.1 D.1\nG1 X1\nG40", "D": "G41.1 D.1\nG1 X1\nG40", "M98": "M98 P1\nM2\nO1\nG0 X2\nM99",
+    "G42.1": "G42.1 D.1\nG1 X1\nG40", "M98": "M98 P1\nM2\nO1\nG0 X2\nM99",
     "M99": "M98 P1\nM2\nO1\nG0 X2\nM99", "O": "o1 if [1]\nG0 X1\no1 endif", "#": "#1=2\nG0 X#1",
     "[": "G0 X[1+1]",
 }  # fmt: skip
