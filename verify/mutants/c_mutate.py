@@ -3,7 +3,8 @@
 
 A copy is the preprocessed source, from its syntax tree, so it needs no headers. What a program of such
 copies does is chosen by the environment: PASSO_MUTANT is the number of the mutant, none for the sources as
-they are; PASSO_REACHED is a file with a byte for each number, which is set when its place is reached.
+they are; PASSO_REACHED is a file with a byte for each number, which is set when its place is reached. A
+library that is loaded already looks again in a process that is forked.
 """
 
 import copy
@@ -33,13 +34,14 @@ MACROS = {
 # In each folder, as programs take some of them.
 CHOICE = """
 #include <fcntl.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 __attribute__((weak)) int passo_mutant;
 __attribute__((weak)) unsigned char *passo_reached;
-__attribute__((weak, constructor)) void passo_choose_mutant(void)
+__attribute__((weak)) void passo_choose_mutant(void)
 {
 	const char *number = getenv("PASSO_MUTANT"), *reached = getenv("PASSO_REACHED");
 	struct stat found;
@@ -51,6 +53,11 @@ __attribute__((weak, constructor)) void passo_choose_mutant(void)
 		passo_reached = mmap(0, (size_t)found.st_size, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
 		close(file);
 	}
+}
+__attribute__((weak, constructor)) void passo_choose_now_and_in_copies(void)
+{
+	passo_choose_mutant();
+	pthread_atfork(0, 0, passo_choose_mutant);
 }
 """
 DECLARED = """
@@ -107,6 +114,11 @@ def parse(source: Path, folders: Collection[Path]) -> c_ast.FileAST:
     macros = [f"-D{name}={value}" for name, value in MACROS.items()]
     flags = ["-E", "-nostdinc", "-D__attribute__(x)=", *macros, *includes(HEADERS, source.parent, *folders)]
     return c_parser.CParser().parse(call([CC, *flags, source]), str(source))
+
+
+def code(source: Path, folders: Collection[Path]) -> str:
+    """The source and what it includes, without comments and layout."""
+    return c_generator.CGenerator().visit(parse(source, folders))
 
 
 def _text(node: c_ast.Node) -> str:

@@ -13,7 +13,7 @@ from passo.compiler import headers, sources
 from passo.output import write_json
 from passo.toolchain import paths
 
-from verify.mutants.c_mutate import CHOICE, Change, changes, mutated
+from verify.mutants.c_mutate import CHOICE, Change, changes, code, mutated
 from verify.mutants.fates import BUILD, hash_of
 
 FOLDERS = {"driver": paths.driver, "planner": paths.planner, "gcode": paths.gcode}
@@ -32,6 +32,7 @@ class CMutant:
     kind: str
     ordinal: int  # among those of its kind in its function
     says: str
+    source: str  # identifies the code of the file and of what it includes
 
     @property
     def module(self) -> str:
@@ -90,11 +91,12 @@ def drawn(
                 shutil.copy(file, made / file.name)
                 continue
             share = max(2, round(count * lines[file] / sum(lines.values())))
+            source = hash_of([], code(file, _headers()))
             chosen: dict[int, int] = {}
             for place, ordinal, change in _draw(file, seed, share):
                 mutant = CMutant(
                     *(len(mutants) + 1, file.name, place, change.line),
-                    *(change.function, change.kind, ordinal, change.text),
+                    *(change.function, change.kind, ordinal, change.text, source),
                 )
                 chosen[place] = mutant.number
                 mutants.append(mutant)
