@@ -109,16 +109,11 @@ class Change:
     text: str
 
 
-def parse(source: Path, folders: Collection[Path]) -> c_ast.FileAST:
-    """The syntax tree of a source."""
+def preprocessed(source: Path, folders: Collection[Path]) -> str:
+    """A source with all that it includes."""
     macros = [f"-D{name}={value}" for name, value in MACROS.items()]
     flags = ["-E", "-nostdinc", "-D__attribute__(x)=", *macros, *includes(HEADERS, source.parent, *folders)]
-    return c_parser.CParser().parse(call([CC, *flags, source]), str(source))
-
-
-def code(source: Path, folders: Collection[Path]) -> str:
-    """The source and what it includes, without comments and layout."""
-    return c_generator.CGenerator().visit(parse(source, folders))
+    return call([CC, *flags, source])
 
 
 def _text(node: c_ast.Node) -> str:
@@ -240,17 +235,23 @@ class Mutator:
         return c_ast.Compound([unless], node.coord)
 
 
-def changes(source: Path, folders: Collection[Path]) -> list[Change]:
-    """All changes that can be made in a source."""
-    mutator = Mutator(source)
-    mutator.run(parse(source, folders))
-    return mutator.changes
+class Parsed:
+    """The syntax tree of a source."""
 
+    def __init__(self, source: Path, text: str) -> None:
+        self.source = source
+        self.tree = c_parser.CParser().parse(text, str(source))
+        self.code = c_generator.CGenerator().visit(self.tree)  # without comments and layout
 
-def mutated(source: Path, folders: Collection[Path], chosen: dict[int, int]) -> str:
-    """The source with mutants: the place among all changes, and the number."""
-    tree = parse(source, folders)
-    Mutator(source, chosen).run(tree)
-    # the compiler checks these in the source; without its headers there is no `offsetof`
-    tree.ext = [item for item in tree.ext if not isinstance(item, c_ast.StaticAssert)]
-    return DECLARED + c_generator.CGenerator().visit(tree)
+    def changes(self) -> list[Change]:
+        """All that can be made."""
+        mutator = Mutator(self.source)
+        mutator.run(self.tree)
+        return mutator.changes
+
+    def mutated(self, chosen: dict[int, int]) -> str:
+        """The source with mutants, as the tree is from then on: the places of changes, and numbers."""
+        Mutator(self.source, chosen).run(self.tree)
+        # the compiler checks these in the source; without its headers there is no `offsetof`
+        self.tree.ext = [item for item in self.tree.ext if not isinstance(item, c_ast.StaticAssert)]
+        return DECLARED + c_generator.CGenerator().visit(self.tree)
