@@ -496,6 +496,23 @@ def test_a_valley_needs_no_level_way() -> None:
     assert flat(path, reach, True) > 0
 
 
+def test_a_valley_is_come_down_to_over_all_of_its_rounding() -> None:
+    """Else the way before it is level, for as much as the corner needs."""
+    reach, seen = 1 << 50, [0, 0]
+    members = {"turn": 400, "lost": 60_000, "needed": 60_000, "bend": reach, "corner": reach, "reach": reach}
+    for left in range(420, 1000, 20):
+        path = Planner(planned=0, added=2, final=2)
+        path.item(0, substeps=1000, slope=1 << 38, top=1 << 58)
+        path.item(1, substeps=1000, slope=1 << 38, top=1 << 58, valley=True, **members)
+        made = profile_of(path, 0, left << 32, reach)
+        down = sum(part.length for part in made if part.kind == FALL)
+        assert sum(part.length for part in made) == left << 32
+        comes_down = made[-1].kind == FALL
+        assert down >= 400 << 32 if comes_down else made[-1].length >= flat(path, made[-1].square) > 0
+        seen[comes_down] += 1
+    assert min(seen) > 5
+
+
 def test_both_sides_of_a_lone_corner_are_level() -> None:
     """The speed is the same over what it needs before it and behind it."""
     seen = 0
