@@ -4,7 +4,9 @@
 import random
 import subprocess
 import tempfile
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from passo import random_cases
@@ -12,9 +14,11 @@ from passo.engine import model_engine
 from passo.toolchain import environment
 
 from verify.mutants import (
+    c_judge,
     corners_judge,
     engine_judge,
     equivalence,
+    fates,
     formal_judge,
     frames_judge,
     inputs_judge,
@@ -29,6 +33,7 @@ from verify.mutants import (
 from verify.mutants.c_equal import object_code
 from verify.mutants.c_judge import Worker
 from verify.mutants.c_mutate import DECLARED
+from verify.mutants.c_source import CMutant
 from verify.mutants.c_source import drawn as drawn_c
 from verify.mutants.engine_judge import Check
 from verify.mutants.netlist import PLAIN, Core, Mutant, drawn
@@ -160,6 +165,44 @@ def test_the_names_of_mutants_are_those_of_their_functions(tmp_path: Path) -> No
     names = [mutant.name for mutant in mutants]
     assert len(set(names)) == len(names) > 10
     assert all(name.split()[0] == FILE and name.split()[-1].isdigit() for name in names)
+
+
+def test_a_change_costs_the_mutants_of_its_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a test reaches is measured again if it, or a source that it reaches, is another; what it has
+    killed is then to be killed again."""
+    mutants = [
+        CMutant(n, f"{name}.c", 0, 1, "f", "operator", 0, "", f"{name}1") for n, name in enumerate("ab")
+    ]
+    asked: list[dict[str, Any]] = []
+
+    class Answers:
+        root = tmp_path
+
+        def ask(self, what: dict[str, Any]) -> dict[str, Any]:
+            asked.append(what)
+            if "record" in what:
+                return {"seconds": {"t.py::x": 0.1}, "reached": {"t.py::x": [0]}, "failed": [], "slow": []}
+            return {"mutant": what["mutant"], "test": "t.py::x", "says": ""}
+
+    file = tmp_path / "t.py"
+    file.write_text("")
+
+    def known(changed: list[CMutant]) -> list[c_judge.Test]:
+        return c_judge.record(Answers(), changed, [file], print, tmp_path / "kept")
+
+    monkeypatch.setattr(fates, "BUILD", tmp_path)
+    found = fates.Fates("c", "", again=False)
+    c_judge.Judge(Answers(), known(mutants), mutants, found).play(mutants[0], 1)
+    assert found.get(mutants[0].name).killed.startswith("t.py::x ") and len(asked) == 2
+    other = [mutants[0], replace(mutants[1], source="b2")]  # which it does not reach
+    assert c_judge.Judge(Answers(), known(other), other, found).again() == 0
+    assert len(asked) == 2
+    other = [replace(mutants[0], source="a2"), mutants[1]]
+    assert c_judge.Judge(Answers(), known(other), other, found).again() == 1
+    assert len(asked) == 4
+    file.write_text("# another test")
+    assert c_judge.Judge(Answers(), known(other), other, found).again() == 1
+    assert len(asked) == 6
 
 
 def test_the_tests_kill_mutants_in_c(tmp_path: Path) -> None:

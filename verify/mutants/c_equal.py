@@ -9,7 +9,7 @@ from passo.compiler import CC, call
 
 from verify.mutants.c_mutate import DECLARED
 from verify.mutants.c_source import FOLDER, FOLDERS, CMutant
-from verify.mutants.fates import Fates, hash_of
+from verify.mutants.fates import Fates
 
 NAME = "object code"
 CHOSEN = "static inline int passo_at(int number) {{ return number == {number}; }}\n"
@@ -31,9 +31,9 @@ def judge(mutants: Sequence[CMutant], fates: Fates, show: Callable[[str], None],
     found = 0
     for file in dict.fromkeys(mutant.file for mutant in mutants):
         source = next(root / name / file for name in FOLDERS if (root / name / file).exists())
-        case = f"{NAME} {hash_of([source])}"
         own = None
         for mutant in (one for one in mutants if one.file == file):
+            case = f"{NAME} {mutant.source}"
             fate = fates.get(mutant.name)
             if fate.equal != case:
                 fate.equal = ""

@@ -3,7 +3,8 @@
 
 A copy is the preprocessed source, from its syntax tree, so it needs no headers. What a program of such
 copies does is chosen by the environment: PASSO_MUTANT is the number of the mutant, none for the sources as
-they are; PASSO_REACHED is a file with a byte for each number, which is set when its place is reached.
+they are; PASSO_REACHED is a file with a byte for each number, which is set when its place is reached. A
+library that is loaded already looks again in a process that is forked.
 """
 
 import copy
@@ -33,13 +34,14 @@ MACROS = {
 # In each folder, as programs take some of them.
 CHOICE = """
 #include <fcntl.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 __attribute__((weak)) int passo_mutant;
 __attribute__((weak)) unsigned char *passo_reached;
-__attribute__((weak, constructor)) void passo_choose_mutant(void)
+__attribute__((weak)) void passo_choose_mutant(void)
 {
 	const char *number = getenv("PASSO_MUTANT"), *reached = getenv("PASSO_REACHED");
 	struct stat found;
@@ -51,6 +53,11 @@ __attribute__((weak, constructor)) void passo_choose_mutant(void)
 		passo_reached = mmap(0, (size_t)found.st_size, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
 		close(file);
 	}
+}
+__attribute__((weak, constructor)) void passo_choose_now_and_in_copies(void)
+{
+	passo_choose_mutant();
+	pthread_atfork(0, 0, passo_choose_mutant);
 }
 """
 DECLARED = """
@@ -102,11 +109,11 @@ class Change:
     text: str
 
 
-def parse(source: Path, folders: Collection[Path]) -> c_ast.FileAST:
-    """The syntax tree of a source."""
+def preprocessed(source: Path, folders: Collection[Path]) -> str:
+    """A source with all that it includes."""
     macros = [f"-D{name}={value}" for name, value in MACROS.items()]
     flags = ["-E", "-nostdinc", "-D__attribute__(x)=", *macros, *includes(HEADERS, source.parent, *folders)]
-    return c_parser.CParser().parse(call([CC, *flags, source]), str(source))
+    return call([CC, *flags, source])
 
 
 def _text(node: c_ast.Node) -> str:
@@ -228,17 +235,23 @@ class Mutator:
         return c_ast.Compound([unless], node.coord)
 
 
-def changes(source: Path, folders: Collection[Path]) -> list[Change]:
-    """All changes that can be made in a source."""
-    mutator = Mutator(source)
-    mutator.run(parse(source, folders))
-    return mutator.changes
+class Parsed:
+    """The syntax tree of a source."""
 
+    def __init__(self, source: Path, text: str) -> None:
+        self.source = source
+        self.tree = c_parser.CParser().parse(text, str(source))
+        self.code = c_generator.CGenerator().visit(self.tree)  # without comments and layout
 
-def mutated(source: Path, folders: Collection[Path], chosen: dict[int, int]) -> str:
-    """The source with mutants: the place among all changes, and the number."""
-    tree = parse(source, folders)
-    Mutator(source, chosen).run(tree)
-    # the compiler checks these in the source; without its headers there is no `offsetof`
-    tree.ext = [item for item in tree.ext if not isinstance(item, c_ast.StaticAssert)]
-    return DECLARED + c_generator.CGenerator().visit(tree)
+    def changes(self) -> list[Change]:
+        """All that can be made."""
+        mutator = Mutator(self.source)
+        mutator.run(self.tree)
+        return mutator.changes
+
+    def mutated(self, chosen: dict[int, int]) -> str:
+        """The source with mutants, as the tree is from then on: the places of changes, and numbers."""
+        Mutator(self.source, chosen).run(self.tree)
+        # the compiler checks these in the source; without its headers there is no `offsetof`
+        self.tree.ext = [item for item in self.tree.ext if not isinstance(item, c_ast.StaticAssert)]
+        return DECLARED + c_generator.CGenerator().visit(self.tree)

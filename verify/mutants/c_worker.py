@@ -109,9 +109,7 @@ def _run(recorder: Recorder, tests: list[str]) -> int:
 
 def _answer(asked: dict[str, Any], begins: Callable[[str], None]) -> dict[str, Any]:
     """In the process of one run, which tells the tests that begin."""
-    os.environ["PASSO_MUTANT"] = str(asked.get("mutant", 0))
     if "record" in asked:
-        os.environ["PASSO_REACHED"] = asked["record"]
         recorder = Recorder(begins, Path(asked["record"]), asked["longest"])
         _run(recorder, asked["tests"])
         return {
@@ -130,6 +128,8 @@ def _answer(asked: dict[str, Any], begins: Callable[[str], None]) -> dict[str, A
 
 def _forked(asked: dict[str, Any]) -> dict[str, Any]:
     """Run it in a process of its own; one that does not end or that crashes has failed."""
+    os.environ["PASSO_MUTANT"] = str(asked.get("mutant", 0))
+    os.environ["PASSO_REACHED"] = asked.get("record", "")
     read, write = os.pipe()
     process = os.fork()
     if process == 0:

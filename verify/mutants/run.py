@@ -2,11 +2,13 @@
 """Make mutants of RTL and C sources, and try them on the judges that do not know the model.
 
     .venv/bin/python -m verify.mutants.run [--seed N] [--only NAME,...] [--each N] [--count N]
+        [--tests NAME,...]
 
-`--only` takes `rtl`, `c`, modules of rtl/ and files of the driver, the planner and G-code. A run continues
+`--only` takes `rtl`, `c`, modules of rtl/ and files of the driver, the planner and G-code; `--tests` files of
+tests, which then are all that judges C. A run continues
 where the last one ended: the fates are kept in build/mutants, and all that was killed is killed once more
-when the sources or the judges are others. A run of everything writes docs/reference/mutants.md; `--page`
-writes what is known, of all or of `--only`, and keeps the rows of what has not been played.
+when the sources or the judges are others. A run writes docs/reference/mutants.md, one of a part its rows
+there, if its mutants are those of the page; `--page` writes what is known without a run.
 """
 
 import argparse
@@ -39,6 +41,7 @@ from verify.mutants.netlist import CORES, MOST, Core, Mutant, drawn, first_of, l
 from verify.mutants.page import Score, scores, show_table, write
 from verify.soak.program import build as program
 
+SEED = 1
 EACH = 16  # of a module of the RTL, in each core that it is in
 COUNT = 520  # of the C sources
 
@@ -53,12 +56,6 @@ def _of_core(core: Core, seed: int, each: int, only: Collection[str]) -> tuple[l
         return [], ""
     mutants, hashed = drawn(core, seed, max(each, MOST))
     return [mutant for mutant in first_of(mutants, each) if not only or mutant.module in only], hashed
-
-
-def _of_c(seed: int, count: int, only: Collection[str]) -> tuple[list[c_source.CMutant], str]:
-    """Those of the C sources."""
-    mutants, hashed = c_source.drawn(seed, count)
-    return [mutant for mutant in mutants if not only or mutant.file in only], hashed
 
 
 def run_core(core: Core, seed: int, each: int, only: Collection[str]) -> list[Score]:
@@ -95,12 +92,14 @@ def known_of(core: Core, seed: int, each: int, only: Collection[str]) -> list[Sc
     return scores(chosen, Fates(f"rtl_{core.name}", "", again=False))
 
 
-def run_c(seed: int, count: int, only: Collection[str]) -> list[Score]:
-    """The tests as judges of the C sources."""
-    chosen, hashed = _of_c(seed, count, only)
+def run_c(seed: int, count: int, only: Collection[str], tests: Collection[str], play: bool) -> list[Score]:
+    """The tests as judges of the C sources; or what is known of them."""
+    mutants, hashed = c_source.drawn(seed, count)
+    chosen = [mutant for mutant in mutants if not only or mutant.file in only]
     fates = Fates("c", hashed, again=False)
-    c_equal.judge(chosen, fates, _say)
-    c_judge.judge(chosen, fates, _say)
+    if play:
+        c_equal.judge(chosen, fates, _say)
+        c_judge.judge(mutants, chosen, fates, _say, tests)
     return scores(chosen, fates)
 
 
@@ -115,10 +114,11 @@ def _chosen(only: Sequence[str], kind: str, ending: str) -> list[str] | None:
 def main() -> None:
     """Run, print the table, and exit with 1 if the judges find fault with the sources themselves."""
     parser = argparse.ArgumentParser(prog="python -m verify.mutants.run", description=__doc__.split("\n")[0])
-    parser.add_argument("--seed", type=int, default=1, help="seed of mutants and scenarios")
+    parser.add_argument("--seed", type=int, default=SEED, help="seed of mutants and scenarios")
     parser.add_argument("--only", default="", help="rtl, c, modules, files")
     parser.add_argument("--each", type=int, default=EACH, help="mutants of a module (default: %(default)s)")
     parser.add_argument("--count", type=int, default=COUNT, help="mutants in C (default: %(default)s)")
+    parser.add_argument("--tests", default="", help="files of tests that judge C (default: all)")
     parser.add_argument("--page", action="store_true", help="only write the page, from what is known")
     arguments = parser.parse_args()
     only = [name for name in arguments.only.split(",") if name]
@@ -129,14 +129,13 @@ def main() -> None:
     for core in CORES if modules is not None else ():
         run = known_of if arguments.page else run_core
         rtl += run(core, arguments.seed, arguments.each, modules or [])
-    if files is not None and arguments.page:
-        chosen, _ = _of_c(arguments.seed, arguments.count, files)
-        c = scores(chosen, Fates("c", "", again=False))
-    elif files is not None:
-        c = run_c(arguments.seed, arguments.count, files)
+    if files is not None:
+        tests = [name for name in arguments.tests.split(",") if name]
+        c = run_c(arguments.seed, arguments.count, files, tests, not arguments.page)
     show_table(rtl, c)
     _say(f"{time.monotonic() - began:.0f} s")
-    if arguments.page or not only:
+    drawn = (arguments.seed, arguments.each, arguments.count)
+    if not only or drawn == (SEED, EACH, COUNT):
         write(rtl, c, arguments.seed)
     for case in rtl_judge.unfair:
         _say(f"the judge finds fault with the core itself: {case}")
