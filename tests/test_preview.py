@@ -136,7 +136,7 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
 def test_all_refused_lines_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """With their places, up to 20; lines that only the planner refuses as well."""
     path = tmp_path / "bad.nc"
-    path.write_text("G1 X1\nG5 X2\nG0 X1\nG38.2 Z-1 F10\nX1 X2\n" + 30 * "G7\n")
+    path.write_text("G1 X1\nG5 X2\nG0 X1\nG38.2 Z-1 F10\nX1 X2\n" + 30 * "G5\n")
     assert run(path) == 2
     told = capsys.readouterr().err.splitlines()
     assert [line.split(": ")[0].split(":")[-1] for line in told[:4]] == ["1", "2", "4", "5"]
@@ -191,7 +191,7 @@ def test_several_files_and_standard_input(
     assert part.end[:2] == (9_000_000, 5_000_000) and part.unread == 1  # M2 has ended G91
     assert [str(place) for place in part.places[1:3]] == [f"{first}:2", f"{second}:1"]
     assert run(first, second, "--from", 2) == 2
-    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(b"G0 X5\nG7 X1")))
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(b"G0 X5\nG5 X1")))
     assert run("-") == 2
     assert "stdin:2: error:20" in capsys.readouterr().err
 

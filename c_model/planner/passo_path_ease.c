@@ -59,29 +59,9 @@ static uint64_t square_by(const struct passo_path_planner *path, const struct pa
 	return passo_path_corner_square(path, corner, left);
 }
 
-#ifndef PASSO_WITHOUT_JERK_PATHS
-void passo_path_rise(struct passo_path_planner *path, const struct passo_path_item *item, uint64_t length)
+static uint64_t wanted(const struct passo_path_item *item)
 {
-	/* half again: as much as a ramp has, on its way, above the square that its mean slope makes */
-	const uint64_t gain = passo_path_gain(item->slope + item->slope / 2, length << 16);
-	const uint64_t from = path->rest ? passo_path_halt(item) : path->at.rise;
-
-	path->at.rise = passo_path_smaller(from + gain, PASSO_PATH_SQUARE_MAX);
-}
-#endif
-
-/* What a line beside the corner may have; with profile jerk, if the path can come to it from rest. */
-static uint64_t wanted(const struct passo_path_planner *path, const struct passo_path_item *item)
-{
-	const uint64_t square = passo_path_speed_square(passo_path_smaller(item->feed, item->limit));
-
-#ifndef PASSO_WITHOUT_JERK_PATHS
-	if (passo_path_is_soft(path))
-		return passo_path_smaller(square, path->at.rise);
-#else
-	(void)path;
-#endif
-	return square;
+	return passo_path_speed_square(passo_path_smaller(item->feed, item->limit));
 }
 
 /* Radius, UQ.8 substeps, of an arc over a length (UQ.30 substeps). */
@@ -244,7 +224,7 @@ uint64_t passo_path_shaped_corner(struct passo_path_planner *path, const struct 
 	const uint64_t turn = passo_isqrt64(corner->turn);
 	const uint64_t radius = radius_of(corner->over, turn), jerk = jerk_of(path, corner, turn);
 	const uint64_t needed = passo_path_larger(
-	    corner->bends_before ? wanted(path, last) : 0, corner->bends_behind ? wanted(path, item) : 0);
+	    corner->bends_before ? wanted(last) : 0, corner->bends_behind ? wanted(item) : 0);
 	const uint64_t weakest = weakest_of(path, unit);
 	const uint64_t across = passo_mul_div(needed, turn, corner->over);
 	uint32_t quarters = lacking(across, weakest);
@@ -267,7 +247,7 @@ uint64_t passo_path_shaped_corner(struct passo_path_planner *path, const struct 
 #ifndef PASSO_WITHOUT_JERK_PATHS
 	if (soft && !bends) {
 		const uint64_t passed =
-		    passo_path_smaller(square, passo_path_smaller(wanted(path, last), wanted(path, item)));
+		    passo_path_smaller(square, passo_path_smaller(wanted(last), wanted(item)));
 
 		item->over = lacking_over(path, corner, unit, item, passed);
 	}

@@ -205,8 +205,6 @@ enum passo_plan_error passo_path_measure(
 		return PASSO_PLAN_TOO_LONG;
 
 	limit_line(path, unit, move->feed, item);
-	if (passo_path_is_soft(path))
-		passo_path_rise(path, item, length);
 	if (path->rest)
 		passo_path_begin_straight(path);
 	else

@@ -285,11 +285,7 @@ struct passo_path_corner {
 uint64_t passo_path_corner_square(
     const struct passo_path_planner *path, const struct passo_path_corner *corner, const uint64_t *left);
 
-/* A line of a length (UQ32.16 substeps) follows: what the path can come to on it, from rest. */
-void passo_path_rise(struct passo_path_planner *path, const struct passo_path_item *item, uint64_t length);
-
-/* The same as passo_path_corner_square() where ramps are shaped; the curved lines beside it leave what the
- * corner needs. */
+/* The same where ramps are shaped; the curved lines beside it leave what the corner needs. */
 uint64_t passo_path_shaped_corner(struct passo_path_planner *path, const struct passo_path_corner *corner,
     const int32_t *unit, struct passo_path_item *item);
 

@@ -110,7 +110,6 @@ struct passo_path_place {
 #ifndef PASSO_WITHOUT_JERK_PATHS
 	int32_t half_turn[PASSO_PATH_AXES_MAX]; /* of the change of direction at that corner, Q1.30 */
 	uint64_t turn, over;                    /* its size, and in which length it turns, UQ.30 substeps */
-	uint64_t rise;  /* square that the path, from rest, does not exceed on that line */
 	uint32_t turns; /* corners of this curve, to one side; 0: the line is in none */
 #endif
 	int32_t carry;        /* Q16: substeps that rounding has withheld from the lines so far */

@@ -23,7 +23,13 @@ from passo.toolchain import paths, short
 
 FOLDERS = (paths.driver, paths.console, paths.protocol, paths.planner, paths.gcode, paths.core)
 # Of the folder: the rest is for a sender.
-GRBL = ("passo_player.c", "passo_player_line.c", "passo_player_probe.c", "passo_program.c")
+GRBL = (
+    "passo_player.c",
+    "passo_player_input.c",
+    "passo_player_line.c",
+    "passo_player_probe.c",
+    "passo_program.c",
+)
 OWN = ("engine_model.c", "passo_terminal.c", "passo_web.c", "passo_web_console.c", "passo_web_program.c")
 EXAMPLE = paths.root / "examples" / "gcode"
 # The warnings are those of GCC, which compiles the same sources elsewhere: Clang has others.
