@@ -3,6 +3,7 @@
 
 import math
 import random
+from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
@@ -365,11 +366,12 @@ def test_overrides_scale_the_feed_up_to_the_limit() -> None:
 # --------------------------------------------------------------------------------------------- corners
 
 
-def corner_of(
-    settings: PathSettings, one: tuple[np.ndarray, float], other: tuple[np.ndarray, float]
-) -> tuple[float, float]:
-    """The highest square at a corner between lines with these directions and lengths, and the length of its
-    arc, in mm."""
+Line = tuple[np.ndarray, float]  # direction and length, mm
+
+
+def corner_of(settings: PathSettings, one: Line, other: Line) -> tuple[float, float, list[float]]:
+    """The highest square at a corner between two lines, the length of its arc and what is before and behind
+    the corner, in mm."""
     (u, before), (w, behind) = one, other
     change = w - u
     cosine = float(np.linalg.norm(change)) / 2
@@ -384,28 +386,32 @@ def corner_of(
             squares.append(float(axis.acceleration) * over / part)
             if axis.jump:
                 squares.append((float(axis.jump) / part) ** 2)
-    return min(squares), over
+    return min(squares), over, sides
+
+
+def random_corners(
+    name: str, least: float, most: float
+) -> Iterator[tuple[PathSettings, CheckedPath, Any, Line, Line]]:
+    """Machine, path, item of the second line, and two lines whose directions differ by `least` to `most`."""
+    for rng in randoms(name, 300):
+        settings = some_machine(rng, profile="linear")
+        path = CheckedPath(settings)
+        begin = [0] * len(settings.axes)
+        first = some_place(rng, begin)
+        second = some_place(rng, first)
+        one, other = direction(begin, first), direction(first, second)
+        if min(one[1], other[1]) < 0.01 or not least < float(np.linalg.norm(other[0] - one[0])) < most:
+            continue
+        add(path, first, None)
+        yield settings, path, add(path, second, None), one, other
 
 
 def test_a_corner_is_as_fast_as_its_axes_allow() -> None:
     """Each changes its speed within its acceleration, over the arc that deviates as much as allowed, or half
     of both lines; or immediately by its start-stop speed."""
-    for rng in randoms("corner", 300):
-        settings = some_machine(rng, profile="linear")
-        path = CheckedPath(settings)
-        axes = len(settings.axes)
-        first = some_place(rng, [0] * axes)
-        second = some_place(rng, first)
-        one, other = direction([0] * axes, first), direction(first, second)
-        if min(one[1], other[1]) < 0.01:
-            continue
-        change = float(np.linalg.norm(other[0] - one[0]))
-        if not 1e-3 < change < 1.9999:
-            continue
-        add(path, first, None)
-        item = add(path, second, None)
+    for settings, path, item, one, other in random_corners("corner", 1e-3, 1.9999):
         scale = Scale(path)
-        square, over = corner_of(settings, one, other)
+        square, over, _ = corner_of(settings, one, other)
         if over * path.substeps_per_mm < 4:
             continue
         ceiling = scale.square(SQUARE_MAX)
@@ -418,29 +424,9 @@ def test_a_lone_corner_says_what_it_needs() -> None:
     """On either side the axis that has the most, of its acceleration, along both lines and by the corner; a
     valley is one whose axes have it where the path comes down to the corner and speeds up behind it."""
     valleys = [0, 0]
-    for rng in randoms("rounding", 300):
-        settings = some_machine(rng, profile="linear")
-        path = CheckedPath(settings)
-        axes = len(settings.axes)
-        first = some_place(rng, [0] * axes)
-        second = some_place(rng, first)
-        one, other = direction([0] * axes, first), direction(first, second)
-        if min(one[1], other[1]) < 0.01 or not 1e-2 < float(np.linalg.norm(other[0] - one[0])) < 1.999:
-            continue
-        add(path, first, None)
-        item = add(path, second, None)
-        square, over = corner_of(settings, one, other)
+    for settings, path, item, one, other in random_corners("rounding", 1e-2, 1.999):
+        square, over, sides = corner_of(settings, one, other)
         change = other[0] - one[0]
-        cosine = float(np.linalg.norm(change)) / 2
-        arc = (
-            float(settings.junction_deviation)
-            * 2
-            * math.sqrt(1 - cosine**2)
-            * (1 + math.sqrt(1 - cosine**2))
-            / cosine
-        )
-        sides = [min(one[1] / 2, arc), min(other[1] / 2, arc)]
-        sides = [min(sides[0], (arc + sides[1]) / 2), min(sides[1], (arc + sides[0]) / 2)]
         alone = [side < size / 2 * (1 - 1e-4) for side, size in zip(sides, (one[1], other[1]), strict=True)]
         if over * path.substeps_per_mm < 100 or any(
             abs(side / size - 0.5) < 1e-3 and not math.isclose(side, size / 2)
@@ -661,7 +647,7 @@ def test_ramps_over_a_lone_corner_leave_it_what_it_needs() -> None:
         add(path, first, feed)
         item = add(path, second, feed)
         one, other = direction([0, 0], first), direction(first, second)
-        _, over = corner_of(settings, one, other)
+        _, over, _ = corner_of(settings, one, other)
         change = other[0] - one[0]
         radius, weakest = (
             over / float(np.linalg.norm(change)),

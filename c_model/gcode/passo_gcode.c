@@ -163,7 +163,7 @@ static void accept_command(struct passo_gcode *gcode, const struct passo_gcode_c
 /* A change is over when passo_gcode_load() says so. */
 static void accept_tool(struct passo_gcode *gcode, const struct passo_gcode_check *check)
 {
-	if (check->block.words & PASSO_GCODE_WORD('T'))
+	if (passo_gcode_has_word(check, 'T'))
 		gcode->tool = (uint8_t)(check->block.value['T' - 'A'] / PASSO_GCODE_MILLION);
 #ifndef PASSO_PLAIN_GCODE
 	const passo_gcode_command change = check->block.command[PASSO_GCODE_TOOL_CHANGE];

@@ -67,14 +67,9 @@ struct passo_gcode_vector passo_gcode_unit_vector(uint64_t angle)
 	}
 }
 
-static uint64_t magnitude(int64_t value)
-{
-	return value < 0 ? 0 - (uint64_t)value : (uint64_t)value;
-}
-
 uint64_t passo_gcode_length(struct passo_gcode_vector vector)
 {
-	const uint64_t x = magnitude(vector.x), y = magnitude(vector.y);
+	const uint64_t x = passo_size64(vector.x), y = passo_size64(vector.y);
 
 	return passo_isqrt128(passo_u128_add(passo_multiply(x, x), passo_multiply(y, y)));
 }
@@ -82,7 +77,7 @@ uint64_t passo_gcode_length(struct passo_gcode_vector vector)
 /* a * b, two's complement */
 static struct passo_u128 product(int64_t a, int64_t b)
 {
-	const struct passo_u128 size = passo_multiply(magnitude(a), magnitude(b));
+	const struct passo_u128 size = passo_multiply(passo_size64(a), passo_size64(b));
 
 	return (a < 0) != (b < 0) ? passo_u128_subtract((struct passo_u128){0, 0}, size) : size;
 }
@@ -106,12 +101,13 @@ struct passo_gcode_vector passo_gcode_rotate(struct passo_gcode_vector vector, s
  * from the ratio of the components, is within 1/80 of a turn. */
 uint64_t passo_gcode_angle(struct passo_gcode_vector vector)
 {
-	while (
-	    magnitude(vector.x) < EIGHTH / 2 && magnitude(vector.y) < EIGHTH / 2 && (vector.x || vector.y)) {
+	while (passo_size64(vector.x) < EIGHTH / 2 && passo_size64(vector.y) < EIGHTH / 2
+	       && (vector.x || vector.y)) {
 		vector.x *= 2;
 		vector.y *= 2;
 	}
-	const uint64_t x = magnitude(vector.x), y = magnitude(vector.y), length = passo_gcode_length(vector);
+	const uint64_t x = passo_size64(vector.x), y = passo_size64(vector.y),
+		       length = passo_gcode_length(vector);
 	if (length == 0)
 		return 0;
 	const uint64_t eighth = x == y ? EIGHTH : passo_mul_div(EIGHTH, x < y ? x : y, x < y ? y : x);
@@ -122,7 +118,7 @@ uint64_t passo_gcode_angle(struct passo_gcode_vector vector)
 	for (unsigned round = 0; round < 3; round++) {
 		const struct passo_gcode_vector unit = passo_gcode_unit_vector(0 - angle);
 		const int64_t across = passo_gcode_rotate(vector, unit).y;
-		const uint64_t turn = passo_mul_div(magnitude(across), TURNS_PER_RADIAN, length);
+		const uint64_t turn = passo_mul_div(passo_size64(across), TURNS_PER_RADIAN, length);
 
 		angle = across < 0 ? angle - turn : angle + turn;
 	}

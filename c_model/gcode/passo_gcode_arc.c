@@ -12,15 +12,10 @@
 #define RADIUS_NEVER 500000u                /* nm */
 #define RADIUS_SHARE 1000u
 
-static uint64_t magnitude(int64_t value)
-{
-	return value < 0 ? 0 - (uint64_t)value : (uint64_t)value;
-}
-
 /* value * share / whole, to the nearest integer */
 static int64_t part(int64_t value, uint32_t share, uint32_t whole)
 {
-	const int64_t size = (int64_t)passo_mul_div(2 * magnitude(value), share, whole);
+	const int64_t size = (int64_t)passo_mul_div(2 * passo_size64(value), share, whole);
 
 	return value < 0 ? -((size + 1) / 2) : (size + 1) / 2;
 }
@@ -38,7 +33,7 @@ static uint64_t times_root(uint64_t length, struct passo_u128 a, struct passo_u1
 enum passo_gcode_error passo_gcode_arc_center(
     struct passo_gcode_vector chord, int64_t radius, bool clockwise, struct passo_gcode_vector *offset)
 {
-	const uint64_t x = magnitude(chord.x), y = magnitude(chord.y), twice = 2 * magnitude(radius);
+	const uint64_t x = passo_size64(chord.x), y = passo_size64(chord.y), twice = 2 * passo_size64(radius);
 	const struct passo_u128 square = passo_u128_add(passo_multiply(x, x), passo_multiply(y, y));
 	const struct passo_u128 diameter = passo_multiply(twice, twice);
 
@@ -89,7 +84,7 @@ static uint64_t helix(const struct passo_gcode_arc *arc, uint64_t turned)
 	struct passo_u128 sum = passo_multiply(turned, turned);
 
 	for (unsigned axis = 0; axis < arc->axes; axis++) {
-		const uint64_t way = magnitude(arc->target[axis] - arc->start[axis]);
+		const uint64_t way = passo_size64(arc->target[axis] - arc->start[axis]);
 
 		if (axis != arc->plane.first && axis != arc->plane.second)
 			sum = passo_u128_add(sum, passo_multiply(way, way));

@@ -12,7 +12,7 @@
 bool passo_gcode_take(struct passo_gcode_check *check, char letter)
 {
 	check->unused &= ~PASSO_GCODE_WORD(letter);
-	return (check->block.words & PASSO_GCODE_WORD(letter)) != 0;
+	return passo_gcode_has_word(check, letter);
 }
 
 static int64_t value_of(const struct passo_gcode_check *check, char letter)
@@ -198,7 +198,7 @@ static enum passo_gcode_error check_port(struct passo_gcode_check *check)
 static enum passo_gcode_error check_change(struct passo_gcode_check *check)
 {
 	const passo_gcode_command change = check->block.command[PASSO_GCODE_TOOL_CHANGE];
-	const bool selects = (check->block.words & PASSO_GCODE_WORD('T')) != 0;
+	const bool selects = passo_gcode_has_word(check, 'T');
 
 	check->loaded = check->gcode->loaded;
 	if (change == PASSO_GCODE_M(6))
@@ -297,12 +297,12 @@ static enum passo_gcode_error check_g10(struct passo_gcode_check *check)
 		return PASSO_GCODE_NO_VALUE;
 	const int64_t number = whole_of(check, 'P'), kind = whole_of(check, 'L');
 #ifndef PASSO_PLAIN_GCODE
-	if (kind == 1 && !(check->block.words & PASSO_GCODE_WORD('R')))
+	if (kind == 1 && !passo_gcode_has_word(check, 'R'))
 		return check_entry(check, number);
 #endif
 	if (number > (int64_t)PASSO_GCODE_SYSTEMS)
 		return PASSO_GCODE_COORDINATES;
-	if ((kind != 2 && kind != 20) || (check->block.words & PASSO_GCODE_WORD('R')))
+	if ((kind != 2 && kind != 20) || (passo_gcode_has_word(check, 'R')))
 		return PASSO_GCODE_UNSUPPORTED;
 	check->system = (unsigned)(number > 0 ? number - 1 : (check->mode[PASSO_GCODE_SYSTEM] - 540) / 10);
 	for (unsigned axis = 0; axis < gcode->settings.axes; axis++) {

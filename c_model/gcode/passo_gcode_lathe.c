@@ -11,14 +11,9 @@
 #define TWO_PI UINT64_C(6283185307) /* in 10^-9 */
 #define BILLION UINT64_C(1000000000)
 
-static bool is_given(const struct passo_gcode_check *check, char letter)
+static int64_t size_of(int64_t value)
 {
-	return (check->block.words & PASSO_GCODE_WORD(letter)) != 0;
-}
-
-static int64_t magnitude(int64_t value)
-{
-	return value < 0 ? -value : value;
+	return (int64_t)passo_size64(value);
 }
 
 /* nm/min of millionths of m/min or ft/min. */
@@ -41,14 +36,14 @@ enum passo_gcode_error passo_gcode_check_spindle(struct passo_gcode_check *check
 	check->fastest = gcode->fastest;
 	if (given == PASSO_GCODE_G(97, 0))
 		check->spindle = passo_gcode_wanted_speed(gcode, gcode->position[X]);
-	if (is_given(check, 'S') && by_surface)
+	if (passo_gcode_has_word(check, 'S') && by_surface)
 		check->surface = surface_of(check);
-	else if (is_given(check, 'S'))
+	else if (passo_gcode_has_word(check, 'S'))
 		check->spindle = check->block.value['S' - 'A'];
 	if (given != PASSO_GCODE_G(96, 0))
 		return PASSO_GCODE_OK;
 	check->fastest = passo_gcode_take(check, 'D') ? check->block.value['D' - 'A'] : 0;
-	return is_given(check, 'S') ? PASSO_GCODE_OK : PASSO_GCODE_NO_VALUE;
+	return passo_gcode_has_word(check, 'S') ? PASSO_GCODE_OK : PASSO_GCODE_NO_VALUE;
 }
 
 /* A feed per revolution needs a spindle that turns. */
@@ -62,7 +57,7 @@ enum passo_gcode_error passo_gcode_check_turning(const struct passo_gcode_check 
 	         : PASSO_GCODE_OK;
 }
 
-/* The radius in nm below which a limit holds, in millionths of rpm; INT64_MAX: it always does. */
+/* The radius in nm below which a limit, in millionths of rpm, holds; without one 0. */
 static int64_t radius_of(const struct passo_gcode *gcode, int64_t limit)
 {
 	return limit > 0 ? (int64_t)passo_mul_div(
@@ -75,7 +70,7 @@ int64_t passo_gcode_wanted_speed(const struct passo_gcode *gcode, int64_t x)
 {
 	const int64_t highest = (int64_t)BILLION * PASSO_GCODE_MILLION - 1;
 	const int64_t limit = gcode->fastest > 0 ? gcode->fastest : highest;
-	const int64_t radius = magnitude(x - passo_gcode_offset(gcode, X));
+	const int64_t radius = size_of(x - passo_gcode_offset(gcode, X));
 
 	if (gcode->mode[PASSO_GCODE_SURFACE] != PASSO_GCODE_G(96, 0))
 		return gcode->spindle;
@@ -89,21 +84,21 @@ int64_t passo_gcode_wanted_speed(const struct passo_gcode *gcode, int64_t x)
 /* Where the next piece of a line ends, in nm from the axis of the lathe: X goes from `at` to `goal`. */
 static int64_t next_radius(int64_t at, int64_t goal, int64_t limited)
 {
-	const int64_t radius = magnitude(at), step = radius / PIECES_PER_RADIUS + 1;
+	const int64_t radius = size_of(at), step = radius / PIECES_PER_RADIUS + 1;
 	const bool same_side = (at >= 0) == (goal >= 0);
 	int64_t next;
 
-	if (same_side && magnitude(goal) >= radius) { /* outward */
+	if (same_side && size_of(goal) >= radius) { /* outward */
 		next = radius < limited ? limited : radius + step;
-		next = next < magnitude(goal) ? next : magnitude(goal);
+		next = next < size_of(goal) ? next : size_of(goal);
 		return goal < 0 ? -next : next;
 	}
 	if (radius > limited) {
 		next = radius - step > limited ? radius - step : limited;
-		next = same_side && next < magnitude(goal) ? magnitude(goal) : next;
+		next = same_side && next < size_of(goal) ? size_of(goal) : next;
 		return at < 0 ? -next : next;
 	}
-	if (magnitude(goal) <= limited)
+	if (size_of(goal) <= limited)
 		return goal;
 	return goal < 0 ? -limited : limited; /* through the middle */
 }
@@ -111,7 +106,7 @@ static int64_t next_radius(int64_t at, int64_t goal, int64_t limited)
 /* Part of a way, to nearest. */
 static int64_t part_of(int64_t way, uint64_t part, uint64_t whole)
 {
-	const int64_t size = (int64_t)passo_mul_div((uint64_t)magnitude(way), part, whole);
+	const int64_t size = (int64_t)passo_mul_div(passo_size64(way), part, whole);
 
 	return way < 0 ? -size : size;
 }
@@ -135,7 +130,7 @@ static void next_piece(struct passo_gcode *gcode, int64_t *target)
 	for (unsigned axis = 0; axis < settings->axes; axis++) {
 		target[axis] = job->from[axis]
 		             + part_of(job->destination[axis] - job->from[axis],
-				 (uint64_t)magnitude(next + offset - job->from[X]), (uint64_t)magnitude(way));
+				 passo_size64(next + offset - job->from[X]), passo_size64(way));
 	}
 	target[X] = next + offset;
 }
@@ -161,9 +156,8 @@ void passo_gcode_turn(struct passo_gcode *gcode, struct passo_gcode_action *acti
 		action->stops = action->stops && !job->motion;
 	}
 	const int64_t offset = passo_gcode_offset(gcode, X);
-	const int64_t end = magnitude(action->target[X] - offset);
-	const int64_t middle =
-	    action->feed == PASSO_PATH_RAPID ? end : (magnitude(job->at - offset) + end) / 2;
+	const int64_t end = size_of(action->target[X] - offset);
+	const int64_t middle = action->feed == PASSO_PATH_RAPID ? end : (size_of(job->at - offset) + end) / 2;
 	const int64_t wanted = passo_gcode_wanted_speed(gcode, offset + middle);
 
 	job->at = action->target[X];

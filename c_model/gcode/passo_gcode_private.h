@@ -38,6 +38,10 @@ void passo_gcode_copy(const struct passo_gcode *gcode, const int64_t *from, int6
 
 /* Whether a word is present; marks it as used. */
 bool passo_gcode_take(struct passo_gcode_check *check, char letter);
+static inline bool passo_gcode_has_word(const struct passo_gcode_check *check, char letter)
+{
+	return (check->block.words & PASSO_GCODE_WORD(letter)) != 0;
+}
 /* Value of a word in nanometers, with the active units. */
 int64_t passo_gcode_length_of(const struct passo_gcode_check *check, char letter);
 /* Whether an axis of the machine is X, Y or Z, as its place of 0 to 2 says; a place without an axis is free.

@@ -22,6 +22,11 @@ bool passo_u128_less(struct passo_u128 a, struct passo_u128 b);
 /* Bit length: position of the highest one bit plus 1; 0 .. 128. */
 uint32_t passo_bits(struct passo_u128 a);
 
+static inline uint64_t passo_size64(int64_t value)
+{
+	return value < 0 ? 0 - (uint64_t)value : (uint64_t)value;
+}
+
 /* The full 128-bit product a * b. */
 struct passo_u128 passo_multiply(uint64_t a, uint64_t b);
 

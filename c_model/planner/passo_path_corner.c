@@ -39,7 +39,7 @@ static void bend_lines(const struct passo_path_planner *path, const int32_t *uni
 	for (uint32_t axis = 0; axis < passo_path_rows(path); axis++) {
 		const int64_t turn = (int64_t)unit[axis] - path->at.direction[axis];
 		const int64_t size = (int64_t)passo_path_smaller(
-		    passo_mul_shift(passo_path_size(turn), inverse, 30), PASSO_PATH_SQUARE_MAX / 2);
+		    passo_mul_shift(passo_size64(turn), inverse, 30), PASSO_PATH_SQUARE_MAX / 2);
 
 		curvature[axis] = turn < 0 ? -size : size;
 	}
@@ -77,7 +77,7 @@ static void find_rounding(const struct passo_path_planner *path, const int32_t *
 	item->turn = (uint32_t)((before ? rounding->before : rounding->behind) >> 16);
 	for (uint32_t axis = 0; axis < passo_path_rows(path); axis++) {
 		const int64_t turn = (int64_t)unit[axis] - path->at.direction[axis];
-		const uint64_t change = passo_path_size(turn);
+		const uint64_t change = passo_size64(turn);
 		if (change == 0)
 			continue;
 		const uint64_t bend = passo_mul_div(path->axis[axis].acceleration, over, change);
@@ -126,7 +126,7 @@ uint64_t passo_path_limit_corner(
 	passo_path_restore_start(passo_path_item(path, path->added - 1), &path->at);
 	for (uint32_t axis = 0; axis < passo_path_rows(path); axis++) {
 		const uint32_t change =
-		    (uint32_t)passo_path_size((int64_t)unit[axis] - path->at.direction[axis]);
+		    (uint32_t)passo_size64((int64_t)unit[axis] - path->at.direction[axis]);
 
 		corner.change[axis] = change;
 		corner.turn += axis < path->machine.axes ? (uint64_t)change * change : 0;

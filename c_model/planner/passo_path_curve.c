@@ -61,7 +61,7 @@ void passo_path_bend(const struct passo_path_planner *path, const int64_t *curva
 		if (curvature[axis] == 0 || share < SHARE_MIN)
 			continue;
 		const uint64_t bend =
-		    passo_path_along(2 * passo_path_size(curvature[axis]), passo_path_inverse(share));
+		    passo_path_along(2 * passo_size64(curvature[axis]), passo_path_inverse(share));
 		const bool helps = (curvature[axis] < 0) == (unit[axis] < 0);
 
 		if (bend > unpacked(curve->bend[half][axis]))

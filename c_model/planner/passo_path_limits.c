@@ -38,7 +38,7 @@ static bool find_direction(const struct passo_path_planner *path, const int64_t 
 	uint64_t longest = 0, sum = 0;
 
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
-		longest = passo_path_larger(longest, passo_path_size(target[axis] - from[axis]));
+		longest = passo_path_larger(longest, passo_size64(target[axis] - from[axis]));
 	if (longest == 0)
 		return false;
 	const uint32_t bits = passo_bits((struct passo_u128){0, longest});
@@ -47,7 +47,7 @@ static bool find_direction(const struct passo_path_planner *path, const int64_t 
 	uint32_t size[PASSO_AXES_MAX];
 
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		size[axis] = (uint32_t)(passo_path_size(target[axis] - from[axis]) >> right << left);
+		size[axis] = (uint32_t)(passo_size64(target[axis] - from[axis]) >> right << left);
 		sum += (uint64_t)size[axis] * size[axis];
 	}
 	const uint32_t root = passo_isqrt64(sum);
@@ -81,7 +81,7 @@ struct passo_path_merged passo_path_off(const struct passo_path_planner *path, c
 	if (!find_direction(path, path->before.target, target, unit, &length) || length <= end->length)
 		return (struct passo_path_merged){.off = UINT64_MAX};
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		const uint64_t change = passo_path_size((int64_t)unit[axis] - end->direction[axis]);
+		const uint64_t change = passo_size64((int64_t)unit[axis] - end->direction[axis]);
 
 		turn += change * change;
 	}
@@ -105,11 +105,11 @@ static uint64_t find_steps(const struct passo_path_planner *path, const int64_t 
 	for (uint32_t motor = 0; motor < passo_path_motors(path); motor++) {
 		const int64_t place = passo_path_motor_place(path, motor, target);
 		const struct passo_u128 product =
-		    passo_multiply(passo_path_size(place), path->steps_per_mm[motor]);
+		    passo_multiply(passo_size64(place), path->steps_per_mm[motor]);
 		const int64_t rounded = (int64_t)(product.high + (product.low >> 63)); /* below 2^63 */
 
 		steps[motor] = place < 0 ? -rounded : rounded;
-		most = passo_path_larger(most, passo_path_size(steps[motor] - path->at.steps[motor]));
+		most = passo_path_larger(most, passo_size64(steps[motor] - path->at.steps[motor]));
 	}
 	return most;
 }
@@ -169,7 +169,7 @@ static void limit_line(
 static void step_to(
     struct passo_path_planner *path, uint32_t motor, int64_t steps, struct passo_path_item *item)
 {
-	item->steps[motor] = (uint32_t)passo_path_size(steps - path->at.steps[motor]);
+	item->steps[motor] = (uint32_t)passo_size64(steps - path->at.steps[motor]);
 	if (steps < path->at.steps[motor])
 		item->directions |= (uint8_t)(1u << motor);
 	path->at.steps[motor] = steps;

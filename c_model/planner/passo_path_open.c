@@ -231,7 +231,7 @@ void passo_path_restart(struct passo_path_planner *path, const int32_t *position
 		uint32_t parts = 1;
 		const int64_t steps = passo_path_axis_place(path, axis, positions, &parts);
 		const uint64_t target =
-		    passo_path_smaller(passo_divide((struct passo_u128){passo_path_size(steps), 0},
+		    passo_path_smaller(passo_divide((struct passo_u128){passo_size64(steps), 0},
 					   path->steps_per_mm[axis] * parts, NULL),
 			PASSO_PATH_TARGET_MAX);
 

@@ -14,10 +14,8 @@
 /* Most lines that may follow a long one immediately. */
 #define BURST 16u
 
-/* By 2^-20 of its square a ramp may be above the profile, which is rounded; by this part it may be steeper.
- */
+/* By 2^-20 of its square a ramp may be above the profile, which is rounded. */
 #define ROUNDED 20u
-#define STEEPER 64u
 
 /* The room for a frame is seen by one poll and used by the next, and a frame of lines may be under way then:
  * what is queued behind the room lasts for three polls. Of three frames two are for lines; one in four is
@@ -204,7 +202,7 @@ static struct passo_path_aim calm(const struct passo_path_planner *path, uint64_
 		const uint64_t fall =
 		    passo_path_smaller(passo_path_change(path, ahead.fall, ticks), from - 1) + 1;
 		const uint64_t most_down =
-		    steep ? ahead.slope + ahead.slope / 16 : ahead.left + ahead.left / STEEPER;
+		    steep ? ahead.slope + ahead.slope / 16 : ahead.left + ahead.left / PASSO_PATH_STEEPER;
 
 		to = passo_path_smaller(to, from - fall);
 		if (from - to > passo_path_change(path, most_down, ticks))

@@ -33,6 +33,10 @@
 /* The path comes to rest from a velocity that the acceleration reaches in this number of ticks. */
 #define PASSO_PATH_LANDING_TICKS 2u
 
+/* By this part of its slope a ramp may be steeper: one that ends within several parts of the profile, with
+ * slopes that differ a little, is a little above it. */
+#define PASSO_PATH_STEEPER 64u
+
 /* A straight part of the profile: the square of the velocity changes evenly over the path. */
 enum passo_path_kind { PASSO_PATH_UP, PASSO_PATH_FLAT, PASSO_PATH_DOWN };
 
@@ -89,12 +93,6 @@ static inline uint64_t passo_path_smaller(uint64_t a, uint64_t b)
 static inline uint64_t passo_path_larger(uint64_t a, uint64_t b)
 {
 	return a > b ? a : b;
-}
-
-/* Of a signed value. */
-static inline uint64_t passo_path_size(int64_t value)
-{
-	return value < 0 ? 0 - (uint64_t)value : (uint64_t)value;
 }
 
 static inline uint32_t passo_path_size32(int32_t value)

@@ -10,10 +10,6 @@
 /* While more lines may come, the reserve is divided into this number of ramps. */
 #define RAMPS_PER_RESERVE 4u
 
-/* By this part of its slope a ramp may be steeper: one that ends within several parts of the profile, with
- * slopes that differ a little, is a little above it. */
-#define STEEPER 64u
-
 /* The ramps have moved on by a distance; in a path that goes on they pass the ends of lines. A ramp can be
  * beyond the end of the path only if the path lasts less than a tick: then it rests immediately. */
 static void advance(struct passo_path_planner *path, uint64_t distance)
@@ -77,7 +73,7 @@ static void follow(
     struct passo_path_planner *path, struct passo_path_aim *aim, uint32_t most, struct passo_ramp *ramp)
 {
 	const uint64_t begin = path->velocity, from = passo_path_square_of(begin);
-	const uint64_t slope = aim->slope + aim->slope / STEEPER;
+	const uint64_t slope = aim->slope + aim->slope / PASSO_PATH_STEEPER;
 	const uint64_t fall = passo_path_smaller(passo_path_gain(slope, aim->length), from);
 
 	aim->square = passo_path_larger(aim->square, from - fall); /* where it cannot come down in time */

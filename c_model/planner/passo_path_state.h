@@ -116,7 +116,7 @@ struct passo_path_place {
 	uint32_t line_credit; /* clocks that the last lines have left, see passo_path_pace.c */
 };
 
-/* By how much a line is off those that it replaces, at most. Both hold. */
+/* By how much a line is off those that it replaces, at most, of which both bounds hold. */
 struct passo_path_merged {
 	uint64_t off;    /* UQ32.16 substeps */
 	uint64_t bulge;  /* UQ.46 per substep: this times the distances to both of its ends */

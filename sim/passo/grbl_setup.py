@@ -14,7 +14,7 @@ import numpy as np
 from passo.build import Parameters
 from passo.engine import NUMBERS
 from passo.failure import BadInputError
-from passo.machine_file import ENCODER_FILTER, RATIO_ONE, MachineFile, check_pins
+from passo.machine_file import ENCODER_FILTER, MachineFile, check_pins
 from passo.moves import PinTiming
 from passo.native import ffi, planner
 from passo.output import write_bytes
@@ -194,8 +194,7 @@ def attach(engine: Any, machine: MachineFile, skews: dict[int, int] | None = Non
 
 
 def _add_encoders(config: Any, machine: MachineFile) -> None:
-    for number, (motor, (counts, _)) in enumerate(machine.encoders.items()):
-        ratio = round(counts / machine.settings.scales[motor] * RATIO_ONE)
+    for number, (motor, ratio) in enumerate(machine.encoder_ratios.items()):
         config.wheel[number] = {"axis": motor, "ratio": ratio, "gap": gap_of(ENCODER_FILTER)}
     config.wheels = len(machine.encoders)
 

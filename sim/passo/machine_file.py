@@ -162,6 +162,12 @@ class MachineFile:
             if counts
         }
 
+    @property
+    def encoder_ratios(self) -> dict[int, int]:
+        """Counts per step of the same motors, UQ16.16."""
+        scales = self.settings.scales
+        return {motor: _ratio(counts / scales[motor]) for motor, (counts, _) in self.encoders.items()}
+
     def motors_of(self, axis: int) -> list[int]:
         """The motors that an axis is named after: its own, and those behind the axes."""
         rows = self.settings.motors.map(len(self.ends))
@@ -512,6 +518,10 @@ def _check_following(ends: AxisEnds) -> None:
             raise BadValueError(f"following is {limit:g} counts; must be 1 to {FOLLOWING_COUNTS}")
 
 
+def _ratio(counts_per_step: float) -> int:
+    return round(counts_per_step * RATIO_ONE)
+
+
 def _check_encoders(axis: PathAxis, ends: AxisEnds, clock_hz: int) -> None:
     """They can be counted at the highest speed."""
     fastest = float(axis.speed) * max(ends.encoders, default=0)
@@ -521,7 +531,7 @@ def _check_encoders(axis: PathAxis, ends: AxisEnds, clock_hz: int) -> None:
         )
     for counts in filter(None, ends.encoders):
         ratio = counts / float(axis.steps_per_mm)
-        if not 1 <= round(ratio * RATIO_ONE) < 1 << 32:
+        if not 1 <= _ratio(ratio) < 1 << 32:
             raise BadValueError(f"encoders: {ratio:g} counts per step cannot be set")
 
 

@@ -19,7 +19,7 @@ from passo.expand.tools import Tool, lengths
 from passo.failure import BadInputError
 from passo.gcode import NANOMETERS, GcodeError, has_words, lines
 from passo.host_loop import HostLoop
-from passo.machine_file import RATIO_ONE, MachineFile
+from passo.machine_file import MachineFile
 from passo.native import ffi
 from passo.pair_engine import PairEngine
 from passo.path import LOOK_AHEAD
@@ -248,8 +248,8 @@ def play_part(
         driver.configure_axis(motor, machine.pins)
     slew = machine.clock_hz // SLEWS_PER_SECOND
     driver.call("configure_motion", slew, slew, 1 << 16)
-    for motor, (counts, limit) in machine.encoders.items():
-        ratio = round(counts / machine.settings.scales[motor] * RATIO_ONE)
+    for motor, ratio in machine.encoder_ratios.items():
+        _, limit = machine.encoders[motor]
         config = {"ratio": ratio, "limit": limit, "stop": driver.lib.PASSO_FOLLOWING_SOFT}
         driver.call("configure_encoder", motor, ffi().new("struct passo_encoder_config *", config))
     program = Program(driver, machine.settings, machine.gcode, look_ahead)

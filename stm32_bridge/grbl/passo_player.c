@@ -118,15 +118,10 @@ static bool still_spins(struct passo_player *player)
 	return player->spins;
 }
 
-uint64_t passo_player_magnitude(int64_t value)
-{
-	return value < 0 ? 0 - (uint64_t)value : (uint64_t)value;
-}
-
 int64_t passo_player_length(int64_t steps, uint64_t scale)
 {
 	const uint64_t twice =
-	    passo_mul_div(passo_player_magnitude(steps) * PASSO_GCODE_MILLION, UINT64_C(1) << 33, scale);
+	    passo_mul_div(passo_size64(steps) * PASSO_GCODE_MILLION, UINT64_C(1) << 33, scale);
 	const int64_t size = (int64_t)((twice + 1) / 2);
 
 	return steps < 0 ? -size : size;

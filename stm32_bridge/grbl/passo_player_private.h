@@ -6,7 +6,6 @@
 
 #include "passo_player.h"
 
-uint64_t passo_player_magnitude(int64_t value);
 /* The time of an action passes at rest, unless held; `waits` until it is over. */
 void passo_player_dwell(struct passo_player *player);
 /* Drops the rest of the line: the program continues from where the path ends. */

@@ -20,7 +20,7 @@ static void mix(
 	*acceleration = passo_path_mixed_acceleration(path, *acceleration);
 	for (unsigned motor = 0; motor < passo_path_motors(path); motor++) {
 		const int64_t own = passo_path_motor_place(path, motor, steps);
-		const uint64_t size = passo_player_magnitude(own);
+		const uint64_t size = passo_size64(own);
 
 		probe->steps[motor] = (int32_t)own;
 		*most = size > *most ? size : *most;
@@ -40,7 +40,7 @@ static struct passo_probe plan_probe(struct passo_player *player, const int32_t 
 	passo_player_place(player, positions, from);
 	for (unsigned axis = 0; axis < player->gcode->settings.axes; axis++) {
 		const struct passo_path_axis *limits = &player->machine->axis[axis];
-		const uint64_t length = passo_player_magnitude(action->target[axis] - from[axis]);
+		const uint64_t length = passo_size64(action->target[axis] - from[axis]);
 		const uint64_t size = passo_mul_div(
 		    passo_mul_div(length, limits->steps_per_mm, UINT64_C(1) << 32), 1, PASSO_GCODE_MILLION);
 
