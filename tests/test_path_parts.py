@@ -155,9 +155,15 @@ def test_a_shaped_ramp_ends_at_the_first_corner_that_it_passes_too_fast(shape: i
             for v in now
         ]
         path = Planner(shape=shape, velocity=begin, planned=first, added=first + count, offset=offset)
+        alone = [rng.random() < 0.5 for _ in corners]
         for i, size in enumerate(substeps):
-            corner = corners[i - 1] ** 2 if i else 0
-            path.item(first + i, substeps=size, corner=min(int(corner * 2**64), SQUARE_MAX))
+            corner = min(int(corners[i - 1] ** 2 * 2**64), SQUARE_MAX) if i else 0
+            path.item(first + i, substeps=size, corner=corner, arc=0 if i and alone[i - 1] else 3)
+        # a lone one may be passed with a sixteenth of the square to spare
+        most = math.sqrt(SQUARE_MAX / 2**64)
+        corners = [
+            min(v, most) * math.sqrt(15 / 16) if one else v for v, one in zip(corners, alone, strict=True)
+        ]
         square = int((end / (1 << 48)) ** 2 * 2**64)
         aim = ffi().new("struct passo_path_aim *", {"length": int(length * UNIT), "square": square})
         found = parts().passo_path_too_fast(path.c, aim) - first
@@ -443,42 +449,43 @@ def test_the_curve_of_each_half_is_its_own() -> None:
         assert at <= max(following.reach, square)
 
 
-def flat(path: Planner, square: int, valley: bool = False, line: int = 0) -> int:
-    return parts().passo_path_flat(path.c, 1, line, square, valley)
+def flat(path: Planner, square: int, valley: bool = False, rises: bool = False) -> int:
+    """Before the corner at the start of item 1."""
+    return parts().passo_path_flat(path.c, 1, 0, rises, square, valley)
+
+
+def both(share: tuple[int, int]) -> list[list[tuple[int, int]]]:
+    """What an axis has of its acceleration in the lines beside a lone corner, and needs there (UQ1.7), for a
+    path that falls and one that rises."""
+    return [[share], [share]]
 
 
 def test_a_lone_corner_is_left_what_it_needs() -> None:
-    """Of twice the acceleration of its axis, before it and behind it, the lines have `lost` at their slopes,
-    and the corner needs its part of the square: over what is level they have less, by what is too much."""
+    """Of twice the acceleration of an axis, before it and behind it, the lines have `lost` at their slopes,
+    and the corner needs its part of the square: over what is level they have less, by what is too much. Of
+    two axes, the one that needs more counts; a path that falls does not need what one that rises does."""
     for rng in randoms("flat", 300):
         path = Planner(added=2)
         path.item(0, substeps=rng.randint(1, 1000))
         bend = whole(rng, 1 << 20, SQUARE_MAX)
-        item = path.item(
-            1,
-            substeps=5,
-            turn=rng.randint(1, 400),
-            lost=rng.randint(0, 65535),
-            needed=rng.randint(0, 65535),
-            bend=bend,
-        )
+        shares = [(rng.randint(1, 255), rng.randint(0, 255)) for _ in range(2)]
+        rises = rng.random() < 0.5
+        lone = [[], shares] if rises else [shares, []]
+        item = path.item(1, substeps=5, turn=rng.randint(1, 400), lone=lone, bend=bend)
         square = rng.choice((bend, rng.randint(0, bend), min(2 * bend, SQUARE_MAX)))
-        found = flat(path, square)
-        needed = Fraction(min(square, bend) * item.needed, bend)
-        over = item.lost + needed - 65536  # in 2^-15 of the acceleration
-        if path.items[0].substeps // 2 < item.turn or over <= 0:
+        found = flat(path, square, rises=rises)
+        assert flat(path, square, rises=not rises) == 0
+        most = max(1 - (256 - Fraction(min(square, bend) * needed, bend)) / lost for lost, needed in shares)
+        if path.items[0].substeps // 2 < item.turn or most <= 0:
             assert found == 0
         else:
-            assert (
-                abs(Fraction(found, UNIT) - item.turn * over / item.lost)
-                <= Fraction(item.turn, item.lost) * 2
-            )
+            assert abs(Fraction(found, UNIT * item.turn) - most) <= Fraction(1, min(shares)[0])
         path.items[1].rest = True
-        assert flat(path, square) == 0
+        assert flat(path, square, rises=rises) == 0
         path.items[1].rest, path.c.added = False, 1
-        assert flat(path, square) == 0
+        assert flat(path, square, rises=rises) == 0
         path.c.added, path.c.shape = 2, COSINE
-        assert flat(path, square) == 0
+        assert flat(path, square, rises=rises) == 0
 
 
 def test_a_valley_needs_no_level_way() -> None:
@@ -486,7 +493,7 @@ def test_a_valley_needs_no_level_way() -> None:
     path = Planner(added=2)
     path.item(0, substeps=1000)
     reach = 1 << 50
-    members = {"substeps": 5, "turn": 100, "lost": 60_000, "needed": 60_000, "bend": reach, "corner": reach}
+    members = {"substeps": 5, "turn": 100, "lone": both((234, 234)), "bend": reach, "corner": reach}
     path.item(1, valley=True, reach=reach, **members)
     assert flat(path, reach) > 0 == flat(path, reach, True)
     assert flat(path, reach - reach // 130, True) == 0 < flat(path, reach - reach // 120, True)
@@ -499,7 +506,7 @@ def test_a_valley_needs_no_level_way() -> None:
 def test_a_valley_is_come_down_to_over_all_of_its_rounding() -> None:
     """Else the way before it is level, for as much as the corner needs."""
     reach, seen = 1 << 50, [0, 0]
-    members = {"turn": 400, "lost": 60_000, "needed": 60_000, "bend": reach, "corner": reach, "reach": reach}
+    members = {"turn": 400, "lone": both((234, 234)), "bend": reach, "corner": reach, "reach": reach}
     for left in range(420, 1000, 20):
         path = Planner(planned=0, added=2, final=2)
         path.item(0, substeps=1000, slope=1 << 38, top=1 << 58)
@@ -520,8 +527,8 @@ def test_both_sides_of_a_lone_corner_are_level() -> None:
         path, item, _ = straight(rng)
         item.substeps, item.slope = 1000, min(item.slope, 1 << 50)
         reach = whole(rng, 1 << 30, min(1 << 60, item.top))
-        turn, lost, needed = rng.randint(1, 400), rng.randint(50_000, 65_535), rng.randint(50_000, 65_535)
-        members = {"turn": turn, "lost": lost, "needed": needed, "bend": reach, "substeps": 1000}
+        share = (rng.randint(195, 255), rng.randint(195, 255))
+        members = {"turn": rng.randint(1, 400), "lone": both(share), "bend": reach, "substeps": 1000}
         path.item(1, slope=item.slope, top=item.top, reach=reach, corner=reach + 1, **members)
         made = profile_of(path, 0, 1000 << 32, rng.randint(0, item.top))
         behind = flat(path, made[-1].square)
@@ -534,7 +541,7 @@ def test_both_sides_of_a_lone_corner_are_level() -> None:
         path.c.planned, path.c.added = 1, 3
         path.item(2, substeps=1, slope=item.slope, top=item.top, reach=item.top, corner=item.top)
         after = profile_of(path, 1, 1000 << 32, begin)
-        level = parts().passo_path_flat(path.c, 1, 1, begin, True)
+        level = parts().passo_path_flat(path.c, 1, 1, True, begin, True)
         assert after[0].kind == FLAT and after[0].length >= level and after[0].square == begin
         # what has been passed of it is left out
         path.c.passing = begin

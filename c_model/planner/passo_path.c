@@ -204,7 +204,7 @@ static uint64_t reach_of(const struct passo_path_planner *path, uint32_t index,
     const struct passo_path_item *item, const struct passo_path_item *next)
 {
 	const uint64_t end = end_square(item, next);
-	uint64_t behind = passo_path_flat(path, index + 1, index, end, true);
+	uint64_t behind = passo_path_flat(path, index + 1, index, false, end, true);
 
 	/* at the end of the newest line a sharp corner may follow, whose arc leaves no slope */
 	if (next == NULL && !item->last && !path->rest && passo_path_shape(path) == PASSO_SHAPE_LINEAR)
@@ -212,7 +212,7 @@ static uint64_t reach_of(const struct passo_path_planner *path, uint32_t index,
 	/* its flat end is that of a square which it cannot exceed */
 	const uint64_t plain = reach_over(item, end, behind, behind);
 	const uint64_t before =
-	    passo_path_flat(path, index, index, passo_path_smaller(item->corner, plain), false);
+	    passo_path_flat(path, index, index, false, passo_path_smaller(item->corner, plain), false);
 	const uint64_t most = before == 0 ? plain : reach_over(item, end, before + behind, behind);
 	const uint64_t reach = passo_path_smaller(item->corner, most);
 

@@ -6,6 +6,8 @@
 
 /* Parts that are shorter share a ramp, unless the speed is lowest between them. */
 #define TICKS_MIN 32u
+/* Unless it is level in a line that cannot be as steep as the next one. */
+#define LEVEL_TICKS_MIN 8u
 /* A rise by less than this part of the square is not worth a ramp. */
 #define LEVEL 128u
 /* Shorter ramps are linear whatever the shape. */
@@ -74,6 +76,8 @@ static bool is_enough(const struct passo_path_planner *path, const struct passo_
 		return false;
 	const uint64_t ticks = passo_path_ticks_to(path, aim);
 	return ticks >= TICKS_MIN
+	    || (ticks >= LEVEL_TICKS_MIN && aim->kind == PASSO_PATH_FLAT && part->slope > aim->slope
+	        && !is_similar(aim->slope, part->slope))
 	    || (ticks > 1 && aim->kind == PASSO_PATH_DOWN && part->kind != PASSO_PATH_DOWN)
 	    || is_long(path, aim->square, part);
 }

@@ -28,9 +28,10 @@ static struct passo_path_rounding rounding_of(uint64_t arc, uint64_t before, uin
 
 /* The halves of the lines beside a corner; where the rounding ends before the middle of a line, it belongs to
  * the corner alone. */
-static void bend_lines(const struct passo_path_planner *path, const int32_t *unit, uint64_t length,
-    const struct passo_path_rounding *rounding, struct passo_path_item *item)
+static void bend_lines(const struct passo_path_planner *path, const int32_t *unit,
+    const struct passo_path_corner *corner, struct passo_path_item *item)
 {
+	const struct passo_path_rounding *rounding = &corner->rounding;
 	const uint64_t inverse = passo_divide(
 	    (struct passo_u128){1, 0}, passo_path_larger(rounding->before + rounding->behind, 1), NULL);
 	struct passo_path_item *last = passo_path_item(path, path->added - 1);
@@ -43,10 +44,10 @@ static void bend_lines(const struct passo_path_planner *path, const int32_t *uni
 
 		curvature[axis] = turn < 0 ? -size : size;
 	}
-	if (rounding->before >= path->at.length / 2)
+	if (corner->bends_before)
 		passo_path_bend(path, curvature, path->at.direction, 1, last);
 	passo_path_set_fall(last);
-	if (rounding->behind >= length / 2)
+	if (corner->bends_behind)
 		passo_path_bend(path, curvature, unit, 0, item);
 }
 
@@ -62,13 +63,30 @@ static int32_t part_of(
 	return unit[axis] < 0 ? -size : size;
 }
 
-/* Of the axis of which the lines beside a lone corner, at their slopes, and its rounding have the most. Where
- * one of them is short, the other one leaves all that is needed there. */
-static void find_rounding(const struct passo_path_planner *path, const int32_t *unit, uint64_t length,
-    const struct passo_path_rounding *rounding, uint64_t over, uint64_t square, struct passo_path_item *item)
+static uint8_t packed(uint32_t share)
+{
+	return (uint8_t)passo_path_smaller((share + 255) >> 8, UINT8_MAX);
+}
+
+static void add_share(uint32_t lost, uint32_t needed, struct passo_path_share *shares)
+{
+	const struct passo_path_share share = {packed(lost), packed(needed)};
+
+	if (share.lost + share.needed > shares[0].lost + shares[0].needed)
+		shares[0] = share;
+	if (share.lost > shares[1].lost) /* at a lower speed this axis needs more */
+		shares[1] = share;
+}
+
+/* What the lines beside a lone corner, at their slopes, and its rounding have of the accelerations of the
+ * axes. Those along the path and across it add up where they are the way that the axis turns. Where one of
+ * the lines is short, the other one leaves all that is needed there. */
+static void find_rounding(const struct passo_path_planner *path, const int32_t *unit,
+    const struct passo_path_corner *corner, uint64_t square, struct passo_path_item *item)
 {
 	const uint64_t slope = passo_path_item(path, path->added - 1)->slope;
-	const bool before = rounding->before < path->at.length / 2, behind = rounding->behind < length / 2;
+	const struct passo_path_rounding *rounding = &corner->rounding;
+	const bool before = !corner->bends_before, behind = !corner->bends_behind;
 	const uint32_t sides = before && behind ? 1 : 2;
 
 	if (!before && !behind)
@@ -80,20 +98,21 @@ static void find_rounding(const struct passo_path_planner *path, const int32_t *
 		const uint64_t change = passo_size64(turn);
 		if (change == 0)
 			continue;
-		const uint64_t bend = passo_mul_div(path->axis[axis].acceleration, over, change);
+		const uint64_t bend = passo_mul_div(path->axis[axis].acceleration, corner->over, change);
 		const uint32_t needed = (uint32_t)passo_mul_div(
 		    passo_path_smaller(square, bend), sides * INT16_MAX, passo_path_larger(bend, 1));
-		const int32_t first = before ? part_of(path, slope, path->at.direction, axis) : 0;
-		const int32_t second = behind ? part_of(path, item->slope, unit, axis) : 0;
+		const int32_t way = turn < 0 ? -1 : 1;
+		const int32_t first = before ? way * part_of(path, slope, path->at.direction, axis) : 0;
+		const int32_t second = behind ? way * part_of(path, item->slope, unit, axis) : 0;
 		const uint32_t lost = sides * (passo_path_size32(first) + passo_path_size32(second));
 
 		/* down before it and up behind it, the axis has the difference the way that it turns */
-		if ((turn < 0 ? first - second : second - first) + (int32_t)needed > 2 * INT16_MAX)
+		if (second - first + (int32_t)needed > 2 * INT16_MAX)
 			item->valley = false;
-		if (lost + needed > (uint32_t)item->lost + item->needed) {
-			item->lost = (uint16_t)lost;
-			item->needed = (uint16_t)needed;
-		}
+		if (first < 0 || second < 0)
+			add_share(lost, needed, item->lone[0]);
+		if (first > 0 || second > 0)
+			add_share(lost, needed, item->lone[1]);
 	}
 }
 #endif
@@ -134,7 +153,7 @@ uint64_t passo_path_limit_corner(
 	if (corner.turn < 4) {
 		item->arc = PASSO_PATH_ARC_BEFORE | PASSO_PATH_ARC_BEHIND;
 		passo_path_begin_straight(path);
-		bend_lines(path, unit, length, &corner.rounding, item);
+		bend_lines(path, unit, &corner, item);
 		return PASSO_PATH_SQUARE_MAX;
 	}
 	const uint64_t arc = half_arc(path, corner.turn);
@@ -143,7 +162,7 @@ uint64_t passo_path_limit_corner(
 	corner.over = passo_path_smaller(arc, both) << (PASSO_PATH_UNIT_BITS - 16);
 	corner.bends_before = corner.rounding.before >= path->at.length / 2;
 	corner.bends_behind = corner.rounding.behind >= length / 2;
-	bend_lines(path, unit, length, &corner.rounding, item);
+	bend_lines(path, unit, &corner, item);
 	if (both < arc)
 		item->arc = (corner.bends_before ? PASSO_PATH_ARC_BEFORE : 0)
 		          | (corner.bends_behind ? PASSO_PATH_ARC_BEHIND : 0);
@@ -152,7 +171,7 @@ uint64_t passo_path_limit_corner(
 	const uint64_t square = passo_path_corner_square(path, &corner, NULL);
 #ifndef PASSO_WITHOUT_ROUNDING
 	if (passo_path_is_rounded(path))
-		find_rounding(path, unit, length, &corner.rounding, corner.over, square, item);
+		find_rounding(path, unit, &corner, square, item);
 #endif
 	return square;
 }

@@ -108,14 +108,33 @@ uint64_t passo_path_slope(
 	return passo_path_larger(slope, 1);
 }
 
+/* Whether what a half leaves changes by more than a third over it. */
+static bool is_strong(const struct passo_path_item *item)
+{
+	const struct passo_path_curve *curve = &item->curve;
+	const uint64_t length = (uint64_t)item->substeps << 31;
+
+	for (unsigned half = 0; half < PASSO_PATH_HALVES; half++) {
+		for (uint32_t axis = 0, axes = curve->helps[half] | curve->hinders[half]; axes > 0;
+		    axis++, axes /= 2) {
+			if (axes % 2 > 0
+			    && growth_over(curve->bend[half][axis], length).grows > UINT64_C(1) << 37)
+				return true;
+		}
+	}
+	return false;
+}
+
 void passo_path_set_fall(struct passo_path_item *item)
 {
 	struct passo_path_curve *curve = &item->curve;
 	const uint64_t length = (uint64_t)item->substeps << 32;
 	uint64_t fall = UINT64_MAX, loss = 0;
 
-	if (passo_path_halves(item) > 1)
+	if (passo_path_halves(item) > 1) {
+		curve->strong = is_strong(item);
 		return;
+	}
 	for (uint32_t axis = 0, axes = curve->hinders[0]; axes > 0; axis++, axes /= 2) {
 		if (axes % 2 == 0)
 			continue;
@@ -145,22 +164,34 @@ uint64_t passo_path_fall(const struct passo_path_item *item, uint64_t end)
 	return fall > lost ? passo_path_smaller(straight, fall - lost) : 0;
 }
 
+/* The square from which a part of a half comes down to one at its end, in a step. */
+static uint64_t step_before(const struct passo_path_item *item, unsigned half, uint64_t end, uint64_t length)
+{
+	return end
+	     + passo_path_gain(passo_path_down(passo_path_slope(item, half, false, end, length)), length);
+}
+
+uint64_t passo_path_half_before(
+    const struct passo_path_item *item, unsigned half, uint64_t end, uint64_t length)
+{
+	if (!passo_path_is_strong(item))
+		return step_before(item, half, end, length);
+	const uint64_t middle =
+	    passo_path_smaller(step_before(item, half, end, length / 2), passo_path_larger(item->top, end));
+	return step_before(item, half, middle, length - length / 2);
+}
+
 uint64_t passo_path_before(const struct passo_path_item *item, uint64_t end, uint64_t length, uint64_t behind)
 {
 	const unsigned halves = passo_path_halves(item);
 	const uint64_t half = (uint64_t)item->substeps << 31;
 	const uint64_t second =
 	    halves > 1 ? passo_path_smaller(half > behind ? half - behind : 0, length) : length;
-	uint64_t square = end
-	                + passo_path_gain(
-			    passo_path_down(passo_path_slope(item, halves - 1, false, end, second)), second);
+	uint64_t square = passo_path_half_before(item, halves - 1, end, second);
 
 	if (second < length) {
-		const uint64_t first = length - second;
-
 		square = passo_path_smaller(square, passo_path_larger(item->top, end));
-		square +=
-		    passo_path_gain(passo_path_down(passo_path_slope(item, 0, false, square, first)), first);
+		square = passo_path_half_before(item, 0, square, length - second);
 	}
 	return square;
 }

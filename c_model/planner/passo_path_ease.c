@@ -15,8 +15,8 @@
 /* On an arc at a speed v, of a radius r, the ramp that is steepest at t takes 3 v t / r of the jerk: with
  * half of it along the arc, 0.7 are left. UQ0.16. */
 #define ACROSS 15463u
-/* In square_between(): of a curve, and of a zigzag, where no ramp has half of the jerk. */
-#define JUMP 5u
+/* In square_between(), of a curve, and of a zigzag, where no ramp has half of the jerk. */
+#define JUMP 4u
 #define ZIGZAG 6u
 /* Corners of a curve: less is a zigzag. */
 #define TURNS 3u
@@ -175,7 +175,7 @@ static uint64_t square_between(const struct passo_path_planner *path, const stru
 		return PASSO_PATH_SQUARE_MAX;
 	const uint64_t last = passo_mul_div(path->at.turn, corner->over, path->at.over);
 	const uint64_t radius = radius_of(corner->over, turn + last);
-	const uint64_t jump = path->at.turns < TURNS ? ZIGZAG * jerk : JUMP * jerk;
+	const uint64_t jump = (path->at.turns < TURNS ? ZIGZAG : JUMP) * jerk;
 	const uint64_t off =
 	    path->deviation / OFF_PART + passo_mul_shift(corner->over, passo_path_larger(turn, last), 56);
 	return soft_square(radius * passo_isqrt64(passo_path_smaller(off, UINT32_MAX) * radius), jump);

@@ -49,7 +49,7 @@ struct passo_path_part {
 };
 
 /* Most parts of a line. */
-#define PASSO_PATH_PARTS 8u
+#define PASSO_PATH_PARTS (PASSO_PATH_HALVES * 6u + 2u)
 
 #define PASSO_PATH_ARC_BEFORE 1u
 #define PASSO_PATH_ARC_BEHIND 2u
@@ -181,6 +181,10 @@ static inline uint64_t passo_path_down(uint64_t slope)
 	return slope - slope / 256;
 }
 
+/* The square from which a part of a half of an item comes down to one at its end. */
+uint64_t passo_path_half_before(
+    const struct passo_path_item *item, unsigned half, uint64_t end, uint64_t length);
+
 /* The highest square, within an item, from which it falls to the one at its end over a length that ends so
  * far before that. */
 uint64_t passo_path_before(
@@ -227,6 +231,12 @@ static inline unsigned passo_path_halves(const struct passo_path_item *item)
 	return PASSO_PATH_HALVES > 1 && item->curve.halved ? 2 : 1;
 }
 
+/* Whether its halves are passed in two steps each. */
+static inline bool passo_path_is_strong(const struct passo_path_item *item)
+{
+	return passo_path_halves(item) > 1 && item->curve.strong;
+}
+
 /* The slope that an item had before its end became a curve. */
 static inline uint64_t passo_path_straight_slope(const struct passo_path_item *item)
 {
@@ -240,7 +250,7 @@ static inline uint64_t passo_path_straight_slope(const struct passo_path_item *i
 /* Sets the slope of an axis of an item, beside its curve. */
 void passo_path_add_slope(struct passo_path_item *item, uint32_t axis, uint32_t share, uint64_t slope);
 
-/* What passo_path_fall() needs of the curve and the length of an item. */
+/* By the curve and the length of an item: what passo_path_fall() needs, and whether its halves are strong. */
 void passo_path_set_fall(struct passo_path_item *item);
 
 /* Change of the square down a whole item that is not halved, to a square at its end: the slope there, over
@@ -317,9 +327,9 @@ bool passo_path_rests_after(const struct passo_path_planner *path, uint32_t inde
 uint64_t passo_path_end_square(const struct passo_path_planner *path, uint32_t index);
 bool passo_path_is_settled(const struct passo_path_planner *path, uint32_t index);
 
-/* Length on either side of the corner at the start of an item, of which `line` is one, over which the path
- * keeps a square, so that the rounding of a lone corner has what it needs of the acceleration. A `valley`,
- * before which the path comes down, may do without. */
+/* Length on the side of the corner at the start of an item that `line` is, over which the path, which rises
+ * there or falls, keeps a square, so that the rounding of a lone corner has what it needs of the
+ * acceleration. A `valley`, before which the path comes down, may do without. */
 #ifdef PASSO_WITHOUT_ROUNDING
 static inline void passo_path_pass(struct passo_path_planner *path, uint64_t velocity)
 {
@@ -332,10 +342,10 @@ static inline uint64_t passo_path_passing(const struct passo_path_planner *path,
 	return square;
 }
 
-static inline uint64_t passo_path_flat(
-    const struct passo_path_planner *path, uint32_t index, uint32_t line, uint64_t square, bool valley)
+static inline uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, uint32_t line,
+    bool rises, uint64_t square, bool valley)
 {
-	(void)path, (void)index, (void)line, (void)square, (void)valley;
+	(void)path, (void)index, (void)line, (void)rises, (void)square, (void)valley;
 	return 0;
 }
 #else
@@ -350,8 +360,8 @@ static inline uint64_t passo_path_passing(const struct passo_path_planner *path,
 	return passo_path_smaller(path->passing, square);
 }
 
-uint64_t passo_path_flat(
-    const struct passo_path_planner *path, uint32_t index, uint32_t line, uint64_t square, bool valley);
+uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, uint32_t line, bool rises,
+    uint64_t square, bool valley);
 #endif
 
 /* Updates `reach` after a line has been added. */

@@ -40,8 +40,8 @@ static bool is_valley(const struct passo_path_item *item, uint64_t square)
 	return item->valley && item->reach == item->corner && square + square / VALLEY >= item->reach;
 }
 
-uint64_t passo_path_flat(
-    const struct passo_path_planner *path, uint32_t index, uint32_t line, uint64_t square, bool valley)
+uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, uint32_t line, bool rises,
+    uint64_t square, bool valley)
 {
 	const struct passo_path_item *item = passo_path_item(path, index);
 
@@ -52,16 +52,26 @@ uint64_t passo_path_flat(
 		return 0;
 	if (valley && is_valley(item, square))
 		return 0;
+	uint64_t flat = 0;
 	/* what both sides leave, signed, is at least what the corner needs: a right angle has it */
-	const uint64_t needed =
-	    passo_mul_div(passo_path_smaller(square, item->bend), item->needed, item->bend);
-	const uint64_t lost = item->lost, left = (UINT32_C(1) << 16) - needed;
-	return left < lost ? passo_mul_div((uint64_t)item->turn << 32, lost - left, lost) : 0;
+	for (unsigned i = 0; i < PASSO_PATH_SHARES; i++) {
+		const struct passo_path_share *share = &item->lone[rises][i];
+		const uint64_t lost = share->lost;
+		if (lost == 0)
+			break;
+		const uint64_t needed =
+		    passo_mul_div(passo_path_smaller(square, item->bend), share->needed, item->bend);
+		const uint64_t left = 256 - needed;
+
+		if (left < lost)
+			flat = passo_path_larger(flat, ((uint64_t)item->turn << 32) / lost * (lost - left));
+	}
+	return flat;
 }
 #endif
 
-/* Of a half, or less: at most three. */
-static unsigned half_parts(const struct passo_path_item *item, unsigned half, uint64_t left, uint64_t square,
+/* Of a half, or less, in a step: at most three. */
+static unsigned step_parts(const struct passo_path_item *item, unsigned half, uint64_t left, uint64_t square,
     uint64_t top, uint64_t end, struct passo_path_part *parts)
 {
 	const uint64_t steepest = passo_path_slope(item, half, false, end, left); /* makes up for rounding */
@@ -92,6 +102,19 @@ static unsigned half_parts(const struct passo_path_item *item, unsigned half, ui
 		parts[0].early = peak < top;
 	count = put(parts, count, PASSO_PATH_FLAT, left - rising - falling, peak, up);
 	return put(parts, count, PASSO_PATH_DOWN, falling, end, steepest);
+}
+
+/* At most six. */
+static unsigned half_parts(const struct passo_path_item *item, unsigned half, uint64_t left, uint64_t square,
+    uint64_t top, uint64_t end, struct passo_path_part *parts)
+{
+	if (!passo_path_is_strong(item) || left < 2)
+		return step_parts(item, half, left, square, top, end, parts);
+	const uint64_t second = left / 2;
+	const uint64_t middle =
+	    passo_path_smaller(passo_path_half_before(item, half, end, second), passo_path_larger(top, end));
+	const unsigned count = step_parts(item, half, left - second, square, top, middle, parts);
+	return count + step_parts(item, half, second, parts[count - 1].square, top, end, parts + count);
 }
 
 /* Without the flat ends, of which that behind is given. */
@@ -138,6 +161,16 @@ static unsigned all_parts(const struct passo_path_planner *path, uint32_t index,
 }
 
 #ifndef PASSO_WITHOUT_ROUNDING
+/* Whether it goes down behind what is flat. */
+static bool falls(const struct passo_path_part *parts, unsigned count, uint64_t square)
+{
+	for (unsigned i = 0; i < count; i++) {
+		if (parts[i].square != square)
+			return parts[i].square < square;
+	}
+	return false;
+}
+
 /* Whether the path comes down over all of the rounding of the valley at the end of an item. */
 static bool comes_down(const struct passo_path_item *next, uint64_t left, uint64_t square,
     const struct passo_path_part *parts, unsigned count)
@@ -159,21 +192,26 @@ unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index,
 	const uint64_t passed = ((uint64_t)passo_path_item(path, index)->substeps << 32) - left;
 	uint64_t end = passo_path_end_square(path, index);
 	const uint64_t corner = passed > 0 ? passo_path_passing(path, square) : square;
-	const uint64_t begun = passo_path_flat(path, index, index, corner, true);
-	const uint64_t before = begun > passed ? begun - passed : 0;
-	uint64_t behind = passo_path_flat(path, index + 1, index, end, true);
+	uint64_t begun = passo_path_flat(path, index, index, true, corner, true);
+	uint64_t before = begun > passed ? begun - passed : 0;
+	uint64_t behind = passo_path_flat(path, index + 1, index, false, end, true);
 	unsigned count = all_parts(path, index, left, before, behind, square, end, level, parts);
 #ifndef PASSO_WITHOUT_ROUNDING
 	const struct passo_path_item *next = passo_path_item(path, index + 1);
 	const bool valley = index + 1 < path->added && is_valley(next, end);
 
+	if (falls(parts, count, square)) {
+		begun = passo_path_flat(path, index, index, false, corner, true);
+		before = begun > passed ? begun - passed : 0;
+		count = all_parts(path, index, left, before, behind, square, end, level, parts);
+	}
 	/* where it comes up to the corner, that is no valley, nor does it need more than at the highest speed
 	 * there */
 	if (valley ? !comes_down(next, left, square, parts, count) : parts[count - 1].square < end) {
 		if (valley)
 			end -= end / VALLEY * 2;
 		count = all_parts(path, index, left, before, 0, square, end, level, parts);
-		behind = passo_path_flat(path, index + 1, index, parts[count - 1].square, false);
+		behind = passo_path_flat(path, index + 1, index, true, parts[count - 1].square, false);
 		if (behind > 0)
 			count = all_parts(path, index, left, before, behind, square, end, level, parts);
 	}

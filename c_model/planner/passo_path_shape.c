@@ -7,6 +7,10 @@
 
 #ifndef PASSO_LINEAR_PATHS
 
+/* A ramp ends at a lone corner that it would pass with less than this part of the square to spare: there it
+ * has no acceleration along the path. */
+#define LONE 16u
+
 /* Square of the velocity that a ramp has when a share of its shape (UQ0.16) is done. */
 static uint64_t square_at(uint64_t begin, uint64_t end, uint32_t share)
 {
@@ -40,8 +44,10 @@ uint32_t passo_path_too_fast(const struct passo_path_planner *path, const struct
 		const uint64_t square = square_at(begin, end, falls ? point : next);
 
 		for (; corner <= covered && corner < aim->length && index + 1 < path->added; index++) {
-			if (square > passo_path_item(path, index + 1)->corner
-			    && passo_path_item(path, index + 1)->corner > 0)
+			const struct passo_path_item *item = passo_path_item(path, index + 1);
+			const uint64_t most = item->corner - (item->arc == 0 ? item->corner / LONE : 0);
+
+			if (square > most && most > 0)
 				return index + 1;
 			corner += (uint64_t)passo_path_item(path, index + 1)->substeps << 32;
 		}

@@ -45,12 +45,23 @@ struct passo_path_curve {
 	uint8_t helps[PASSO_PATH_HALVES];   /* bit i set: on the way up */
 	uint8_t hinders[PASSO_PATH_HALVES]; /* on the way down */
 	bool halved;                        /* each half has its own */
+	bool strong;                        /* and is passed in two steps, as it leaves less and less */
 	uint32_t
 	    fall; /* of a line that is not: change of the square from its start down to 0, by its curve */
 	uint32_t loss; /* UQ0.32: what a square at its end takes of that; no packed number */
 };
 
 /* A line of the path, private. Squares are those of velocities, UQ0.64 (substeps per clock)^2. */
+#ifndef PASSO_WITHOUT_ROUNDING
+/* Of the acceleration of an axis at a lone corner, UQ1.7. */
+struct passo_path_share {
+	uint8_t lost;   /* what it has before and behind the corner, in all, the way that it turns */
+	uint8_t needed; /* what the rounding needs at the square `bend` */
+};
+
+#define PASSO_PATH_SHARES 2u
+#endif
+
 struct passo_path_item {
 	uint32_t feed;   /* velocity, UQ0.32 */
 	uint32_t limit;  /* highest velocity within the line, by its axes */
@@ -72,10 +83,10 @@ struct passo_path_item {
 	                       and with half of this one (bit 1) */
 	bool rapid;         /* its feed is PASSO_PATH_RAPID */
 #ifndef PASSO_WITHOUT_ROUNDING
-	uint32_t turn;   /* substeps on either side over which a lone corner at its start may be rounded */
-	uint16_t lost;   /* UQ1.15: what its axis has of its acceleration before and behind it, in all */
-	uint16_t needed; /* UQ1.15: what the rounding needs of that axis at the square `bend` */
-	bool valley;     /* it has that where the path comes down to the corner and speeds up behind it */
+	uint32_t turn; /* substeps on either side over which a lone corner at its start may be rounded */
+	/* of a path that falls, or rises: of the axis with most of both there, and of that which lost most */
+	struct passo_path_share lone[2][PASSO_PATH_SHARES];
+	bool valley; /* it has that where the path comes down to the corner and speeds up behind it */
 #endif
 #ifndef PASSO_LINEAR_PATHS
 	uint8_t eased; /* in a curve: quarters of the slope that are for the way across */
