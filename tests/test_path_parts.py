@@ -503,52 +503,85 @@ def test_a_valley_needs_no_level_way() -> None:
     assert flat(path, reach, True) > 0
 
 
+def change_over(made: list[Any], square: int, length: int) -> Fraction:
+    """From a square to that over a length from the start of parts; squares change evenly within each."""
+    at = Fraction(square)
+    for part in made:
+        now = min(part.length, length)
+        at += Fraction(now, part.length) * (part.square - at)
+        length -= now
+    return at - square
+
+
+def change_at_the_end(made: list[Any], square: int, length: int) -> Fraction:
+    """Over a length at the end of parts."""
+    whole = sum(part.length for part in made)
+    return change_over(made, square, whole) - change_over(made, square, whole - length)
+
+
 def test_a_valley_is_come_down_to_over_all_of_its_rounding() -> None:
-    """Else the way before it is level, for as much as the corner needs."""
-    reach, seen = 1 << 50, [0, 0]
+    """Else the way down leaves what the corner needs: it is that of all the slope over the rest of it."""
+    reach, seen, slope, turn = 1 << 50, [0, 0], 1 << 38, 400 << 32
     members = {"turn": 400, "lone": both((234, 234)), "bend": reach, "corner": reach, "reach": reach}
     for left in range(420, 1000, 20):
         path = Planner(planned=0, added=2, final=2)
-        path.item(0, substeps=1000, slope=1 << 38, top=1 << 58)
-        path.item(1, substeps=1000, slope=1 << 38, top=1 << 58, valley=True, **members)
+        path.item(0, substeps=1000, slope=slope, top=1 << 58)
+        path.item(1, substeps=1000, slope=slope, top=1 << 58, valley=True, **members)
         made = profile_of(path, 0, left << 32, reach)
-        down = sum(part.length for part in made if part.kind == FALL)
         assert sum(part.length for part in made) == left << 32
-        comes_down = made[-1].kind == FALL
-        assert down >= 400 << 32 if comes_down else made[-1].length >= flat(path, made[-1].square) > 0
+        comes_down = made[-1].square == reach
+        if comes_down:
+            assert sum(part.length for part in made if part.kind == FALL) >= turn
+        else:
+            assert reach * 62 // 64 <= made[-1].square < reach
+            steep = turn - flat(path, made[-1].square)
+            fall = -change_at_the_end(made, reach, turn)
+            assert slope * steep / UNIT * 0.98 < fall <= slope * steep / UNIT
         seen[comes_down] += 1
     assert min(seen) > 5
 
 
-def test_both_sides_of_a_lone_corner_are_level() -> None:
-    """The speed is the same over what it needs before it and behind it."""
-    seen = 0
+def test_a_lone_corner_has_what_it_needs_on_both_sides() -> None:
+    """Where the path comes up to it, the speed is the same over that; where it comes down to it, or rises
+    behind it, the square changes over its rounding by no more than at the full slope over the rest."""
+    seen = [0, 0]
     for rng in randoms("sides", 200):
         path, item, _ = straight(rng)
         item.substeps, item.slope = 1000, min(item.slope, 1 << 50)
+        first = rng.randint(0, item.top)
         reach = whole(rng, 1 << 30, min(1 << 60, item.top))
-        share = (rng.randint(195, 255), rng.randint(195, 255))
-        members = {"turn": rng.randint(1, 400), "lone": both(share), "bend": reach, "substeps": 1000}
+        if rng.random() < 0.5:  # one that is hardly come up to
+            reach = min(first + item.slope * rng.randint(500, 1200), item.top)
+        share, turn = (rng.randint(195, 255), rng.randint(195, 255)), rng.randint(1, 400)
+        members = {"turn": turn, "lone": both(share), "bend": reach, "substeps": 1000}
         path.item(1, slope=item.slope, top=item.top, reach=reach, corner=reach + 1, **members)
-        made = profile_of(path, 0, 1000 << 32, rng.randint(0, item.top))
-        behind = flat(path, made[-1].square)
-        assert sum(part.length for part in made) == 1000 << 32
+        made = profile_of(path, 0, 1000 << 32, first)
         last = made[-1]
-        if last.square == reach and all(part.kind != FALL or part.square == reach for part in made):
-            assert last.kind == FLAT and last.length >= behind > 0
-            seen += 1
+        assert sum(part.length for part in made) == 1000 << 32
+        level = flat(path, last.square)
+        if last.square == reach and last.kind != FALL:
+            assert last.kind == FLAT and last.length >= level > 0
+            seen[0] += 1
+        elif last.square == reach and made[0].kind != FALL:
+            fall = -change_at_the_end(made, first, turn << 32)
+            most = Fraction(item.slope * ((turn << 32) - level), UNIT)
+            assert fall <= most * (1 + Fraction(1, 1 << 20)) + 4
+            seen[1] += 1
         begin = min(reach, item.top)
         path.c.planned, path.c.added = 1, 3
         path.item(2, substeps=1, slope=item.slope, top=item.top, reach=item.top, corner=item.top)
         after = profile_of(path, 1, 1000 << 32, begin)
-        level = parts().passo_path_flat(path.c, 1, 1, True, begin, True)
-        assert after[0].kind == FLAT and after[0].length >= level and after[0].square == begin
+        steep = (turn << 32) - parts().passo_path_flat(path.c, 1, 1, True, begin, True)
+        rise = change_over(after, begin, turn << 32)
+        assert rise <= Fraction(item.slope * steep, UNIT) * (1 + Fraction(1, 1 << 20)) + 4
+        assert after[0].square > begin or begin == item.top
         # what has been passed of it is left out
-        path.c.passing = begin
-        passed = level // 2
-        rest = profile_of(path, 1, (1000 << 32) - passed, begin)
-        assert rest[0].length == after[0].length - passed
-    assert seen > 20
+        path.c.passing, passed = begin, after[0].length // 2
+        square = begin + int(change_over(after, begin, passed))
+        rest = profile_of(path, 1, (1000 << 32) - passed, square)
+        again = change_over(rest, square, (turn << 32) - passed)
+        assert abs(square + again - begin - rise) <= rise / 2**20 + 2**20
+    assert min(seen) > 10
 
 
 # ------------------------------------------------------------------------------------ ramps by their jerk

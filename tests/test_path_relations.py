@@ -167,10 +167,11 @@ def test_few_polls_cost_little(profile: str) -> None:
 
 
 # What a tenth of the paths, a quarter, half, three quarters and nine tenths take at most, of the fastest
-# motion; and the tenth at least: unrounded a corner is faster than the reference has it.
+# motion; and the tenth at least: around a lone corner the reference knows one acceleration on either side, and
+# unrounded a corner is faster than it has it.
 SHARES = (0.1, 0.25, 0.5, 0.75, 0.9)
 TAKES = {
-    "linear": (0.99, (1, 1, 1.0006, 1.002, 1.006)),
+    "linear": (0.98, (1, 1, 1.0006, 1.002, 1.006)),
     f"linear{SIMPLE}": (0.95, (1, 1, 1.0012, 1.0025, 1.012)),
     "cosine": (0.999, (1.006, 1.02, 1.08, 1.25, 1.55)),
     "sigmoid": (0.999, (1.008, 1.025, 1.1, 1.25, 1.55)),

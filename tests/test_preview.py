@@ -123,9 +123,9 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     (tmp_path / "preview.json").write_text("old")
     assert run(GCODE / "part.nc", "--out", tmp_path) == 0
     said = capsys.readouterr().out
-    assert "24 lines, 530 chords in 12.0947 s\nextent in mm: X 0 to 80, Y 0 to 60, Z -1 to 2" in said
+    assert "24 lines, 530 chords in 12.0901 s\nextent in mm: X 0 to 80, Y 0 to 60, Z -1 to 2" in said
     facts = json.loads((tmp_path / "preview.json").read_text())
-    assert facts["ok"] and facts["path_seconds"] == pytest.approx(12.094736)
+    assert facts["ok"] and facts["path_seconds"] == pytest.approx(12.090084)
     assert (tmp_path / "preview.png").stat().st_size > 20_000
     page = (tmp_path / "preview.html").read_text()
     assert "Bound by" in page and "Levels of Z" in page and "data:image/png" in page

@@ -32,6 +32,7 @@ static unsigned put(struct passo_path_part *parts, unsigned count, enum passo_pa
 #ifndef PASSO_WITHOUT_ROUNDING
 /* By this part of its square a path may be slower in a valley. */
 #define VALLEY 128u
+#define SP 3
 
 /* Whether the path passes the corner at the start of an item at the highest speed there, from which it need
  * not come down any further. A ramp that comes down to there ends within a tick. */
@@ -186,23 +187,89 @@ static bool comes_down(const struct passo_path_item *next, uint64_t left, uint64
 }
 #endif
 
+#ifndef PASSO_WITHOUT_ROUNDING
+/* The way up behind a level part begins with less slope instead: it is faster sooner. */
+static unsigned rise_evenly(struct passo_path_part *parts, unsigned count, uint64_t over, uint64_t square)
+{
+	struct passo_path_part *flat = &parts[0], *up = &parts[1];
+
+	if (count < 2 || flat->kind != PASSO_PATH_FLAT || up->kind != PASSO_PATH_UP || flat->length >= over)
+		return count;
+	const uint64_t both = flat->length + up->length, most = passo_path_smaller(both, over);
+	const uint64_t steep = most - flat->length;
+	*flat = *up;
+	flat->square = square + passo_mul_div(up->square - square, steep, up->length);
+	flat->slope = passo_path_larger(passo_mul_div(up->slope, steep, most), 1);
+	flat->length = most;
+	up->length = both - most;
+	if (up->length > 0)
+		return count;
+	for (unsigned i = 1; i + 1 < count; i++)
+		parts[i] = parts[i + 1];
+	return count - 1;
+}
+
+/* The way down before a level part ends with less slope instead. */
+static unsigned fall_evenly(struct passo_path_part *parts, unsigned count, uint64_t over, uint64_t square)
+{
+	if (count < 2)
+		return count;
+	struct passo_path_part *down = &parts[count - 2], *flat = &parts[count - 1];
+
+	if (flat->kind != PASSO_PATH_FLAT || down->kind != PASSO_PATH_DOWN || flat->length >= over)
+		return count;
+	const uint64_t both = flat->length + down->length, most = passo_path_smaller(both, over);
+	const uint64_t steep = most - flat->length, from = count > 2 ? parts[count - 3].square : square;
+	const struct passo_path_part last = {PASSO_PATH_DOWN, most, flat->square,
+	    passo_path_larger(passo_mul_div(down->slope, steep, most), 1), .early = false};
+	down->square = flat->square + passo_mul_div(from - flat->square, steep, down->length);
+	down->length = both - most;
+	if (down->length == 0)
+		count--;
+	parts[count - 1] = last;
+	return count;
+}
+
+/* Length over which a way of less slope replaces a level part at a corner that turns over a length, and the
+ * steep way beside it. A level part takes longest, so it leaves most for the corner, but it costs most: so
+ * between. */
+static uint64_t spread(uint64_t flat, uint64_t turn)
+{
+	return flat + (turn - flat) / 2;
+}
+
+/* What is level of the rest of it. */
+static uint64_t share_of(uint64_t flat, uint64_t over, uint64_t left)
+{
+	return left < over ? passo_mul_div(flat, left, over) : flat;
+}
+#endif
+
 unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index, uint64_t left,
     uint64_t square, bool level, struct passo_path_part *parts)
 {
-	const uint64_t passed = ((uint64_t)passo_path_item(path, index)->substeps << 32) - left;
 	uint64_t end = passo_path_end_square(path, index);
-	const uint64_t corner = passed > 0 ? passo_path_passing(path, square) : square;
-	uint64_t begun = passo_path_flat(path, index, index, true, corner, true);
-	uint64_t before = begun > passed ? begun - passed : 0;
-	uint64_t behind = passo_path_flat(path, index + 1, index, false, end, true);
-	unsigned count = all_parts(path, index, left, before, behind, square, end, level, parts);
-#ifndef PASSO_WITHOUT_ROUNDING
+#ifdef PASSO_WITHOUT_ROUNDING
+	return all_parts(path, index, left, 0, 0, square, end, level, parts);
+#else
+	const struct passo_path_item *item = passo_path_item(path, index);
 	const struct passo_path_item *next = passo_path_item(path, index + 1);
+	const uint64_t passed = ((uint64_t)item->substeps << 32) - left;
+	const uint64_t corner = passed > 0 ? passo_path_passing(path, square) : square;
+	const uint64_t begun = passo_path_flat(path, index, index, true, corner, true);
+	const uint64_t ended = passo_path_flat(path, index + 1, index, false, end, true);
+	const uint64_t rising = spread(begun, (uint64_t)item->turn << 32);
+	const uint64_t over = rising > passed ? rising - passed : 0;
+	const uint64_t falling = spread(ended, (uint64_t)next->turn << 32);
+	uint64_t before = share_of(begun, rising, over);
+	uint64_t behind = share_of(ended, falling, left);
+	unsigned count = all_parts(path, index, left, before, behind, square, end, level, parts);
 	const bool valley = index + 1 < path->added && is_valley(next, end);
 
 	if (falls(parts, count, square)) {
-		begun = passo_path_flat(path, index, index, false, corner, true);
-		before = begun > passed ? begun - passed : 0;
+		const uint64_t flat = passo_path_flat(path, index, index, false, corner, true);
+
+		before = flat > passed ? flat - passed : 0;
 		count = all_parts(path, index, left, before, behind, square, end, level, parts);
 	}
 	/* where it comes up to the corner, that is no valley, nor does it need more than at the highest speed
@@ -215,6 +282,10 @@ unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index,
 		if (behind > 0)
 			count = all_parts(path, index, left, before, behind, square, end, level, parts);
 	}
-#endif
+	if (before > 0)
+		count = rise_evenly(parts, count, over, square);
+	if (behind > 0)
+		count = fall_evenly(parts, count, passo_path_smaller(falling, left), square);
 	return count;
+#endif
 }
