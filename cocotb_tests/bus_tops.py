@@ -7,127 +7,39 @@ the same replies and pulses for the same frames; and the rules of passo_words.
 
 from collections.abc import Callable, Sequence
 from itertools import pairwise
-from typing import Any, Protocol
+from typing import Any
 
 import cocotb
 import numpy as np
 from cocotb.handle import HierarchyObject
-from cocotb.triggers import RisingEdge
-from cocotbext.axi import AxiLiteBus, AxiLiteMaster, AxiResp
-from cocotbext.wishbone.driver import WBOp, WishboneMaster
 from passo.build import Parameters
+from passo.cocotb.bus import SELECT, WORD, AxiLite, Bus, BusHost, Wishbone
 from passo.cocotb.clocks import PERIOD, Clocks, Recorder, read
-from passo.cocotb.host import plain_test, set_idle, wait
+from passo.cocotb.host import plain_test, wait
 from passo.cocotb.thread import Thread
 from passo.driver import Driver
 from passo.engine import Engine, model_engine
 from passo.registers import Operation
 
 from cocotb_tests.helpers import core_frames as frames
-from cocotb_tests.helpers.bench import begin, patience, rng
+from cocotb_tests.helpers.bench import patience, rng
 from cocotb_tests.helpers.runner import BUS_CORE
 from tests.helpers.driver_wire import by_speed, configure
 
 PARAMETERS = Parameters(**{name.lower(): value for name, value in BUS_CORE.items()})
 CLOCK_HZ = 10_000_000  # of plans
-SELECT, WORD = 0, 4  # addresses
 READ_WAIT = 264  # clocks of a read, at most
 WAIT = 128  # clocks after a word or a change of SELECT
-ALL_LANES = 0xF
 MOVES = ((30, -17), (-5, 0), (1, 40), (-26, -23))
 
 
-class Bus(Protocol):
-    """Bus accesses of a CPU; both return None if the access is answered with an error."""
+class BusCore(BusHost):
+    """The core behind a bus, with the clock of the plans and all that was recorded."""
 
-    async def read(self, address: int) -> int | None:
-        """Read a register."""
-
-    async def write(self, address: int, value: int, lanes: int = ALL_LANES) -> bool | None:
-        """Write bytes of a register."""
-
-
-class Wishbone:
-    """Classic cycles."""
-
-    INPUTS = ("wb_cyc_i", "wb_stb_i", "wb_we_i", "wb_adr_i")  # before the master takes them over
-
-    def __init__(self, dut: HierarchyObject):
-        names = ("cyc", "stb", "we", "adr", "sel", "ack", "err")
-        signals = {n: f"{n}_{'o' if n in ('ack', 'err') else 'i'}" for n in names}
-        signals |= {"datwr": "dat_i", "datrd": "dat_o"}
-        self._master = WishboneMaster(dut, "wb", dut.clk, signals_dict=signals, timeout=4 * WAIT)
-
-    async def _access(self, operation: WBOp) -> int | None:
-        (result,) = await self._master.send_cycle([operation])
-        return result.datrd.to_unsigned() if result.ack == 1 else None
-
-    async def read(self, address: int) -> int | None:
-        return await self._access(WBOp(address))
-
-    async def write(self, address: int, value: int, lanes: int = ALL_LANES) -> bool | None:
-        return None if await self._access(WBOp(address, value, sel=lanes)) is None else True
-
-
-class AxiLite:
-    """Address and data of a write come in the order that the master chooses."""
-
-    INPUTS = ()
-
-    def __init__(self, dut: HierarchyObject):
-        self._master = AxiLiteMaster(AxiLiteBus.from_prefix(dut, "s_axil"), dut.clk, dut.rst)
-
-    async def read(self, address: int) -> int | None:
-        answer = await self._master.read(address, 4)
-        return int.from_bytes(answer.data, "little") if answer.resp == AxiResp.OKAY else None
-
-    async def write(self, address: int, value: int, lanes: int = ALL_LANES) -> bool | None:
-        # bytes that follow each other: the master has no other way to say which
-        first = (lanes & -lanes).bit_length() - 1
-        data = value.to_bytes(4, "little")[first : first + lanes.bit_count()]
-        answer = await self._master.write(address + first, data)
-        return True if answer.resp == AxiResp.OKAY else None
-
-
-class BusCore:
-    """The core behind a bus, as an engine for passo.driver."""
-
-    clock_hz = CLOCK_HZ
-
-    def __init__(self, dut: HierarchyObject, thread: Thread, clocks: Clocks, bus: Bus):
-        self.dut, self.clocks, self.bus = dut, clocks, bus
-        self._thread = thread
+    def __init__(self, dut: HierarchyObject, thread: Thread, clocks: Clocks, bus: Bus, base: int = 0):
+        super().__init__(dut, thread, clocks, bus, base)
+        self.clock_hz = CLOCK_HZ
         self.changes = [Recorder(clocks, signal) for signal in (dut.running, dut.step, dut.dir)]
-
-    @property
-    def clock(self) -> int:
-        """Clocks up to now."""
-        return self.clocks.now
-
-    def read(self, address: int) -> int | None:
-        """Read a register; None: error."""
-        return self._thread.wait(self.bus.read(address))
-
-    def write(self, address: int, value: int, lanes: int = ALL_LANES) -> bool | None:
-        """Write a register; None: error."""
-        return self._thread.wait(self.bus.write(address, value, lanes))
-
-    def transfer(self, mosi: Sequence[int], gap: int = frames.GAP) -> list[int]:
-        """One frame, as stm32_bridge/examples/soft_cpu.c exchanges it; then `gap` clocks."""
-        miso = []
-        assert self.write(SELECT, 1)
-        for word in mosi:
-            miso.append(self.read(WORD))
-            assert self.write(WORD, word)
-        assert self.write(SELECT, 0)
-        self.run(gap)
-        return miso
-
-    def run(self, clocks: int) -> int:
-        """Let time pass."""
-        if clocks:
-            self._thread.wait(wait(clocks * PERIOD))
-        return clocks
 
     def pulses(self) -> list[tuple[int, int, int]]:
         """All edges of STEP, as `motion_edges` has them."""
@@ -145,12 +57,7 @@ def motion_edges(signals: Sequence[Sequence[tuple[int, int]]]) -> list[tuple[int
 
 
 async def _begin(dut: HierarchyObject, thread: Thread) -> BusCore:
-    master = Wishbone if hasattr(dut, "wb_cyc_i") else AxiLite
-    set_idle(dut)
-    clocks = await begin(dut, *master.INPUTS)
-    core = BusCore(dut, thread, clocks, master(dut))
-    await RisingEdge(dut.clk)
-    return core
+    return await BusCore.begin(dut, thread, Wishbone if hasattr(dut, "wb_cyc_i") else AxiLite)
 
 
 def bus_test(body: Callable[[BusCore], None]) -> Any:

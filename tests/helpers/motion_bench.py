@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: MIT
 """cocotb tests of the tops in examples/integration: a move has its steps, and the e-stop acts."""
 
-from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
 from cocotb.handle import HierarchyObject
-from cocotbext.wishbone.driver import WBOp, WishboneMaster
 from passo.build import Parameters
-from passo.cocotb.clocks import PERIOD, Clocks, Recorder, read
-from passo.cocotb.host import Host, plain_test, set_idle, wait
+from passo.cocotb.bus import AxiLite, BusHost, Wishbone
+from passo.cocotb.clocks import Recorder, read
+from passo.cocotb.host import Host, plain_test
 from passo.cocotb.thread import Thread
 from passo.driver import Driver
 from passo.moves import MoveInTime, PinTiming
@@ -21,69 +20,15 @@ MOVE = MoveInTime(STEPS, "cosine", total_time=Fraction(40, 10**6), ramp_time=Fra
 CLOCKS = 4000  # that it takes, of 10 ns
 TIMING = PinTiming(20, 20, 50, 20)
 OFF = 0b111  # active low
-BASE, SELECT, WORD = 0x3000_0000, 0, 4  # of motion_litex.py
+BASE = 0x3000_0000  # of motion_litex.py
 
 
-class Bus:
-    """An engine for passo.driver on the Wishbone bus."""
-
-    clock_hz = 100_000_000
-
-    def __init__(self, dut: HierarchyObject, thread: Thread, clocks: Clocks):
-        names = ("cyc", "stb", "we", "adr", "sel", "ack", "err")
-        signals = {name: name for name in names} | {"datwr": "dat_w", "datrd": "dat_r"}
-        self.dut, self.clocks, self._thread = dut, clocks, thread
-        self._master = WishboneMaster(dut, "wb", dut.clk, signals_dict=signals, timeout=1000)
-
-    @property
-    def clock(self) -> int:
-        """Clocks up to now."""
-        return self.clocks.now
-
-    def _access(self, register: int, *written: int) -> int:
-        operation = WBOp(BASE + register, *written)
-        (result,) = self._thread.wait(self._master.send_cycle([operation]))
-        assert result.ack == 1
-        return 0 if written else result.datrd.to_unsigned()
-
-    def transfer(self, mosi: Sequence[int], gap: int = 64) -> list[int]:
-        """One frame, then `gap` clocks."""
-        miso = []
-        self._access(SELECT, 1)
-        for word in mosi:
-            miso.append(self._access(WORD))
-            self._access(WORD, word)
-        self._access(SELECT, 0)
-        self.run(gap)
-        return miso
-
-    def run(self, clocks: int) -> int:
-        """Let time pass."""
-        self._thread.wait(wait(clocks * PERIOD))
-        return clocks
-
-    def set(self, pin: str, levels: int) -> None:
-        """Set the levels of an input pin."""
-
-        async def set_pin() -> None:
-            getattr(self.dut, pin).value = levels
-
-        self._thread.wait(set_pin())
-
-
-async def _begin(dut: HierarchyObject, thread: Thread) -> Host | Bus:
+async def _begin(dut: HierarchyObject, thread: Thread) -> Host | BusHost:
     if hasattr(dut, "spi_sclk"):
         return await Host.begin(dut, thread)
-    set_idle(dut)
-    for name in ("cyc", "stb", "we", "adr", "sel", "dat_w", "cti", "bte"):
-        getattr(dut, f"wb_{name}").value = 0
-    dut.rst.value = 1
-    clocks = Clocks(dut.clk)
-    clocks.start()
-    await clocks.wait(8)
-    dut.rst.value = 0
-    await clocks.wait(2)
-    return Bus(dut, thread, clocks)
+    if hasattr(dut, "s_axil_awvalid"):
+        return await BusHost.begin(dut, thread, AxiLite)
+    return await BusHost.begin(dut, thread, Wishbone, 0 if hasattr(dut, "wb_cyc_i") else BASE)
 
 
 def motion_test(body: Any) -> Any:

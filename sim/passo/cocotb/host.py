@@ -32,38 +32,17 @@ PICOSECONDS = 10**12
 Engine = TypeVar("Engine")
 
 
-class Host:
-    """An engine for passo.link.Link, passo.host.Channel and passo.driver.Driver.
+class DesignHost:
+    """What all hosts have: engines for passo.link.Link, passo.host.Channel and passo.driver.Driver.
 
-    The design has `clk`, `rst`, the SPI pins of passo_spi_top and, to be watched, `step` and `dir`.
+    The design has `clk`, `rst` and, to be watched, `step` and `dir`.
     """
 
     def __init__(self, dut: HierarchyObject, thread: Thread, clocks: Clocks) -> None:
         self.dut, self.clocks = dut, clocks
         self.clock_hz = PICOSECONDS // clocks.period
         self.checker: PulseChecker | None = None
-        self.half_period, self.sclk_high = 2, 2  # clocks
-        self.corrupt: Callable[[list[int]], list[int]] = list  # what the wire makes of a frame
         self._thread = thread
-        self._spi = SpiMaster(dut, 2 * clocks.period)
-        self._model: CoreModel | None = None
-
-    @classmethod
-    async def begin(cls, dut: HierarchyObject, thread: Thread) -> Self:
-        """Reset; return on the falling edge at its end."""
-        dut.rst.value = 1
-        set_idle(dut)
-        clocks = Clocks(dut.clk)
-        clocks.start()
-        CoreModel.go_on(clocks)
-        host = cls(dut, thread, clocks)
-        # chip select resets the SCLK domain by an edge
-        dut.spi_cs_n.value = 0
-        await clocks.wait(4)
-        dut.spi_cs_n.value = 1
-        await clocks.wait(4)
-        dut.rst.value = 0
-        return host
 
     # time
 
@@ -71,32 +50,6 @@ class Host:
     def clock(self) -> int:
         """Clocks up to now."""
         return self.clocks.now
-
-    def transfer(self, mosi: Sequence[int], gap: int = 16) -> list[int]:
-        """One chip select: send the words and return those received, then wait for `gap` clocks."""
-        bits = self.transfer_bits(mosi, 32 * len(mosi), gap)
-        return [int("".join(map(str, bits[n : n + 32])), 2) for n in range(0, len(bits), 32)]
-
-    def transfer_bits(
-        self, mosi: Sequence[int], count: int, gap: int = 16, cut_high: bool = False
-    ) -> list[int]:
-        """One chip select of `count` bits."""
-        words = self.corrupt(list(mosi))
-        received = self._thread.wait(self._master(gap).transfer_bits(words, count, cut_high=cut_high))
-        self.compare()
-        return received
-
-    def clock_others(self, bits: int) -> None:
-        """SCLK and MOSI move for another slave: chip select stays high."""
-        self._thread.wait(self._master(LEAD).clock_others(bits))
-        self.compare()
-
-    def _master(self, gap: int) -> SpiMaster:
-        spi, period = self._spi, self.clocks.period
-        spi.period, spi.high = 2 * self.half_period * period, self.sclk_high * period
-        spi.lead = spi.trail = LEAD * period
-        spi.gap = gap * period
-        return spi
 
     def run(self, clocks: int) -> int:
         """Let time pass."""
@@ -130,18 +83,8 @@ class Host:
 
     # checks
 
-    def follow(self, core: HierarchyObject, parameters: Parameters) -> None:
-        """As the first thing of a test: compare this passo_spi_top with the model, from now to the end."""
-
-        async def make() -> CoreModel:
-            return CoreModel.of(self.clocks, core, parameters)
-
-        self._model = self._thread.wait(make())
-
     def compare(self) -> None:
-        """Compare all up to now."""
-        if self._model is not None:
-            self._model.compare()
+        """Compare all up to now, if there is something to compare with."""
 
     def watch(self, *timings: PinTiming) -> PulseChecker:
         """Check these pin timings from now on, one per axis, or one for all."""
@@ -168,13 +111,85 @@ class Host:
         self.checker = None
         return told
 
+    def told(self) -> list[str]:
+        """Finish all checks; tell what was checked."""
+        seen = self.finish_watch()
+        self.compare()
+        return [seen] if seen else []
+
     def end(self) -> None:
         """Finish all checks and log what was checked."""
-        told = [self.finish_watch()]
+        self.dut._log.info("; ".join(self.told()))
+
+
+class Host(DesignHost):
+    """A host at the SPI pins of passo_spi_top."""
+
+    def __init__(self, dut: HierarchyObject, thread: Thread, clocks: Clocks) -> None:
+        super().__init__(dut, thread, clocks)
+        self.half_period, self.sclk_high = 2, 2  # clocks
+        self.corrupt: Callable[[list[int]], list[int]] = list  # what the wire makes of a frame
+        self._spi = SpiMaster(dut, 2 * clocks.period)
+        self._model: CoreModel | None = None
+
+    @classmethod
+    async def begin(cls, dut: HierarchyObject, thread: Thread) -> Self:
+        """Reset; return on the falling edge at its end."""
+        dut.rst.value = 1
+        set_idle(dut)
+        clocks = Clocks(dut.clk)
+        clocks.start()
+        CoreModel.go_on(clocks)
+        host = cls(dut, thread, clocks)
+        # chip select resets the SCLK domain by an edge
+        dut.spi_cs_n.value = 0
+        await clocks.wait(4)
+        dut.spi_cs_n.value = 1
+        await clocks.wait(4)
+        dut.rst.value = 0
+        return host
+
+    def transfer(self, mosi: Sequence[int], gap: int = 16) -> list[int]:
+        """One chip select: send the words and return those received, then wait for `gap` clocks."""
+        bits = self.transfer_bits(mosi, 32 * len(mosi), gap)
+        return [int("".join(map(str, bits[n : n + 32])), 2) for n in range(0, len(bits), 32)]
+
+    def transfer_bits(
+        self, mosi: Sequence[int], count: int, gap: int = 16, cut_high: bool = False
+    ) -> list[int]:
+        """One chip select of `count` bits."""
+        words = self.corrupt(list(mosi))
+        received = self._thread.wait(self._master(gap).transfer_bits(words, count, cut_high=cut_high))
         self.compare()
+        return received
+
+    def clock_others(self, bits: int) -> None:
+        """SCLK and MOSI move for another slave: chip select stays high."""
+        self._thread.wait(self._master(LEAD).clock_others(bits))
+        self.compare()
+
+    def _master(self, gap: int) -> SpiMaster:
+        spi, period = self._spi, self.clocks.period
+        spi.period, spi.high = 2 * self.half_period * period, self.sclk_high * period
+        spi.lead = spi.trail = LEAD * period
+        spi.gap = gap * period
+        return spi
+
+    def follow(self, core: HierarchyObject, parameters: Parameters) -> None:
+        """As the first thing of a test: compare this passo_spi_top with the model, from now to the end."""
+
+        async def make() -> CoreModel:
+            return CoreModel.of(self.clocks, core, parameters)
+
+        self._model = self._thread.wait(make())
+
+    def compare(self) -> None:
+        """Compare all up to now."""
         if self._model is not None:
-            told.append(self._model.summary())
-        self.dut._log.info("; ".join(filter(None, told)))
+            self._model.compare()
+
+    def told(self) -> list[str]:
+        return [*super().told(), *([self._model.summary()] if self._model is not None else [])]
 
 
 def set_idle(dut: HierarchyObject) -> None:
