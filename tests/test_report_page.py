@@ -113,7 +113,7 @@ def test_zoom_to_a_clock(browser: Browser, tmp_path: Path) -> None:
     assert 0.24 < (maximum - minimum) / length < 0.26
     middle = int(run.steps(0)[0][10_000])
     browser.value(f"passo.view.set({middle - 20}, {middle + 20})")
-    browser.wait(f"{note}.includes('every edge')")
+    browser.wait(f"passo.view.isDrawn && {note}.includes('every edge')")
     level = browser.value(f"[-1, 0].map(d => passo.motion.axes[0].level('STEP', {middle} + d).high)")
     assert level == [False, True]
     found = browser.value("passo.histogram.found.total")

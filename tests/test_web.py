@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: MIT
 """The page to try Passo makes the same steps as `passo run`."""
 
+import base64
 import json
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
+from passo.cli import main
 from passo.engine import model_engine
 from passo.machine_file import read_machine
 from passo.move_file import read_moves
@@ -14,6 +17,7 @@ from passo.plan import plan_file
 from passo.run import execute, parameters_for
 from passo.web import EXAMPLE, build
 
+from benchmarks.page import measure
 from tests.helpers.browser import Browser
 
 MOVES = (
@@ -28,35 +32,64 @@ MOVES = (
 )
 
 
-def test_the_same_steps_as_the_command(tmp_path: Path) -> None:
-    page = build(tmp_path / "web")
-    with Browser(tmp_path / "browser") as browser:
-        browser.open(page.as_uri(), "passo || document.getElementById('verdict').textContent")
-        assert browser.errors == []
-        for steps, profile, keys, values in MOVES:
-            names = [word.split("=")[0] for word in keys.split()]
-            table = "\n".join(f"{name} = {value}" for name, value in zip(names, values, strict=True))
-            moves = tmp_path / "moves.toml"
-            moves.write_text(
-                f'clock_hz = 16_000_000\n[[move]]\nsteps = {steps}\nprofile = "{profile}"\n{table}\n'
-            )
-            file = read_moves(moves)
-            parameters = parameters_for(file.axes)
-            with model_engine(parameters, file.clock_hz) as engine:
-                run = execute(file, plan_file(file, parameters), engine)
-            line = f"move steps={','.join(map(str, steps))} profile={profile} {keys.format(*values)}"
-            browser.value(f"document.querySelector('.lines').value = {line!r}")
-            browser.value("document.querySelector('.go').click()")
-            assert browser.value("document.getElementById('verdict').textContent") == "done"
-            for axis in range(file.axes):
-                own = f"passo.motion.axes.find(own => own.axis === {axis})"
-                clocks, directions = run.steps(axis)
-                if len(clocks):
-                    assert browser.value(f"Array.from({own}.rises)") == clocks.tolist()
-                    assert (
-                        browser.value(f"Array.from({own}.counted)")
-                        == np.cumsum(directions, dtype=int).tolist()
-                    )
+@pytest.fixture(scope="module")
+def page(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """The address of the page."""
+    return build(tmp_path_factory.mktemp("web")).as_uri()
+
+
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    """A browser for all tests."""
+    with Browser(tmp_path_factory.mktemp("browser")) as browser:
+        yield browser
+
+
+@pytest.fixture
+def browser(kept: Browser, page: str) -> Browser:
+    """The page, as it opens."""
+    kept.errors.clear()
+    kept.open("about:blank")
+    kept.open(page, READY)
+    return kept
+
+
+READY = "web && web.done"
+VERDICT = "document.getElementById('verdict').textContent"
+
+
+def verdict_of(browser: Browser, text: str, language: str = "G-code") -> str:
+    """Type a program and run it; the verdict."""
+    done = browser.value("web.done")
+    browser.value(
+        f"(web.put({json.dumps(text)}, {json.dumps(language)}), document.getElementById('go').click())"
+    )
+    browser.wait(f"web.done > {done}")
+    return browser.value(VERDICT)
+
+
+def test_the_same_steps_as_the_command(browser: Browser, tmp_path: Path) -> None:
+    assert browser.errors == []
+    for steps, profile, keys, values in MOVES:
+        names = [word.split("=")[0] for word in keys.split()]
+        table = "\n".join(f"{name} = {value}" for name, value in zip(names, values, strict=True))
+        moves = tmp_path / "moves.toml"
+        moves.write_text(
+            f'clock_hz = 16_000_000\n[[move]]\nsteps = {steps}\nprofile = "{profile}"\n{table}\n'
+        )
+        file = read_moves(moves)
+        parameters = parameters_for(file.axes)
+        with model_engine(parameters, file.clock_hz) as engine:
+            run = execute(file, plan_file(file, parameters), engine)
+        line = f"move steps={','.join(map(str, steps))} profile={profile} {keys.format(*values)}"
+        assert verdict_of(browser, line, "moves") == "done"
+        for axis in range(file.axes):
+            own = f"passo.motion.axes.find(own => own.axis === {axis})"
+            clocks, directions = run.steps(axis)
+            if len(clocks):
+                assert browser.value(f"Array.from({own}.rises)") == clocks.tolist()
+                counted = np.cumsum(directions, dtype=int).tolist()
+                assert browser.value(f"Array.from({own}.counted)") == counted
 
 
 PROGRAMS = (
@@ -65,49 +98,144 @@ PROGRAMS = (
 )
 
 
-def run_gcode(browser: Browser, program: str) -> None:
-    browser.value("document.querySelector('.language').value = 'G-code'")
-    browser.value(f"document.querySelector('.lines').value = {json.dumps(program)}")
-    browser.value("document.querySelector('.go').click()")
-
-
 def in_motions(clocks: np.ndarray, begins: list[int]) -> np.ndarray:
     """Clocks from the begin of each motion: the host decides how long the machine rests between two."""
     return clocks - np.array(begins)[np.searchsorted(begins, clocks, "right") - 1]
 
 
-def test_gcode_makes_the_same_steps_as_the_command(tmp_path: Path) -> None:
+def test_gcode_makes_the_same_steps_as_the_command(browser: Browser, tmp_path: Path) -> None:
     machine = read_machine(EXAMPLE / "machine.toml")
-    with Browser(tmp_path / "browser") as browser:
-        browser.open(build(tmp_path / "web").as_uri(), "passo")
-        for number, program in enumerate(PROGRAMS):
-            path = tmp_path / f"{number}.nc"
-            path.write_text(program)
-            axes = len(machine.settings.axes)
-            with model_engine(parameters_for(axes), machine.clock_hz) as engine:
-                played = play_part(read_part(path, machine), machine, engine)
-            run_gcode(browser, program)
-            assert browser.value("document.getElementById('verdict').textContent") == "done"
-            begins = browser.value("passo.motion.facts.events.map(event => event.clock)")[::2]
-            wanted = [begin for begin, _ in played.motions]
-            assert len(begins) == len(wanted)
-            for axis, (clocks, positions) in enumerate(zip(played.clocks, played.positions, strict=True)):
-                own = f"passo.motion.axes.find(own => own.axis === {axis})"
-                assert len(clocks)
-                made = np.array(browser.value(f"Array.from({own}.rises)"))
-                assert in_motions(made, begins).tolist() == in_motions(clocks, wanted).tolist()
-                assert browser.value(f"Array.from({own}.counted)") == positions.tolist()
+    for number, program in enumerate(PROGRAMS):
+        path = tmp_path / f"{number}.nc"
+        path.write_text(program)
+        axes = len(machine.settings.axes)
+        with model_engine(parameters_for(axes), machine.clock_hz) as engine:
+            played = play_part(read_part(path, machine), machine, engine)
+        assert verdict_of(browser, program) == "done"
+        begins = browser.value("passo.motion.facts.events.map(event => event.clock)")[::2]
+        wanted = [begin for begin, _ in played.motions]
+        assert len(begins) == len(wanted)
+        for axis, (clocks, positions) in enumerate(zip(played.clocks, played.positions, strict=True)):
+            own = f"passo.motion.axes.find(own => own.axis === {axis})"
+            assert len(clocks)
+            made = np.array(browser.value(f"Array.from({own}.rises)"))
+            assert in_motions(made, begins).tolist() == in_motions(clocks, wanted).tolist()
+            assert browser.value(f"Array.from({own}.counted)") == positions.tolist()
 
 
-def test_the_tool_path_has_the_color_of_its_speed(tmp_path: Path) -> None:
-    with Browser(tmp_path / "browser") as browser:
-        browser.open(build(tmp_path / "web").as_uri(), "passo")
-        run_gcode(browser, "G21 G90\nG1 X30 Y40 F3000\nX-30 Y120 F1500")
-        browser.wait("passo.path.speeds")
-        fastest, along = browser.value("[passo.path.speeds.fastest, passo.path.speeds.speeds]")
-        assert fastest == pytest.approx(50, rel=0.03)
-        second = along[len(along) // 2 : 7 * len(along) // 8]  # one is as exact as its window has steps
-        assert sum(second) / len(second) == pytest.approx(25, rel=0.01)
+def test_the_speed_along_the_path_is_that_of_the_program(browser: Browser) -> None:
+    verdict_of(browser, "G21 G90\nG1 X30 Y40 F3000\nX-30 Y120 F1500")
+    fastest, along = browser.value("[passo.view.course.fastest, Array.from(passo.view.course.speed)]")
+    assert fastest == pytest.approx(50, rel=0.03)
+    second = along[len(along) // 2 : 7 * len(along) // 8]  # one is as exact as its window has steps
+    assert sum(second) / len(second) == pytest.approx(25, rel=0.01)
+    steepest = browser.value("Math.max(...passo.view.course.acceleration)")
+    assert steepest == pytest.approx(1000 / 0.8, rel=0.05)  # of axis Y, along the first line
+
+
+def test_the_tool_path_turns_and_the_tool_moves(browser: Browser) -> None:
+    verdict_of(browser, "G21 G90\nG1 X30 Y40 Z5 F3000")
+    browser.wait("passo.view.isDrawn")
+    before = browser.value("passo.path.canvas.toDataURL()")
+    browser.drag("#path .tool", 0.4, 0.6)
+    browser.wait(f"passo.view.isDrawn && passo.path.canvas.toDataURL() !== {json.dumps(before)}")
+    browser.value("passo.view.set(0, passo.motion.hz / 10)")
+    browser.value("passo.player.toggle()")
+    browser.wait("passo.view.pointer > passo.motion.hz / 100")
+    shown = browser.value("document.querySelector('#speed .readout').textContent")
+    assert shown and shown != "0"
+    browser.value("(passo.player.toggle(), passo.player.playing)")
+    assert browser.value("passo.player.playing") == 0
+
+
+LONG = "G21 G90 F6000\n" + "G1 X100\nX0\n" * 200
+
+
+def test_cancel_shows_what_was_played(browser: Browser) -> None:
+    browser.value(f"(web.put({json.dumps(LONG)}, 'G-code'), document.getElementById('go').click())")
+    browser.wait("document.getElementById('told').textContent.includes('played')")
+    browser.value("document.getElementById('cancel').click()")
+    browser.wait("web.done > 1")
+    assert browser.value(VERDICT).startswith("canceled at line ")
+    assert 0 < browser.value("passo.motion.axes[0].rises.length") < 400 * 100 * 80
+    assert verdict_of(browser, "G1 F600 X1") == "done"
+
+
+def test_a_run_is_replaced_by_the_next(browser: Browser) -> None:
+    browser.value(f"(web.put({json.dumps(LONG)}, 'G-code'), document.getElementById('go').click())")
+    browser.value("(web.put('G1 F600 X1', 'G-code'), document.getElementById('go').click())")
+    browser.wait("web.done > 2")
+    assert browser.value(VERDICT) == "done"
+    assert browser.value("passo.motion.axes[0].rises.length") == 80
+
+
+def saved(browser: Browser, button: str) -> bytes:
+    """What a button saves."""
+    browser.value(
+        "window.kept = null; window.save = async blob => { kept = new Uint8Array(await blob.arrayBuffer()); }"
+    )
+    browser.value(f"document.getElementById('{button}').click()")
+    browser.wait("kept")
+    return base64.b64decode(browser.value("toBase64(kept)"))
+
+
+def test_results_are_saved_as_the_command_writes_them(browser: Browser, tmp_path: Path) -> None:
+    machine = EXAMPLE / "machine.toml"
+    program = tmp_path / "part.nc"
+    program.write_text("G21 G90 F3000\nG1 X10 Y-2\nG3 X-3.3 Y0 R8 F600")
+    assert main(["run", str(program), "--machine", str(machine), "--out", str(tmp_path / "out")]) == 0
+    assert verdict_of(browser, program.read_text()) == "done"
+    assert saved(browser, "csv") == (tmp_path / "out" / "pulses.csv").read_bytes()
+    assert saved(browser, "png").startswith(b"\x89PNG")
+    rises = browser.value("passo.motion.axes.map(axis => Array.from(axis.rises))")
+    report = tmp_path / "report.html"
+    report.write_bytes(saved(browser, "report"))
+    browser.open(report.as_uri(), "passo && passo.ready")
+    assert browser.value("passo.motion.axes.map(axis => Array.from(axis.rises))") == rises
+    assert browser.errors == []
+
+
+def test_a_link_carries_the_program(browser: Browser, page: str) -> None:
+    verdict_of(browser, "G1 F600 X2 (µ)")
+    browser.value("document.getElementById('link').click()")
+    browser.wait("location.hash && document.getElementById('told').textContent")
+    link = browser.value("location.href")
+    browser.open("about:blank")
+    browser.open(link, READY)
+    assert browser.value("[web.language, web.text]") == ["G-code", "G1 F600 X2 (µ)"]
+    assert browser.value("passo.motion.axes[0].rises.length") == 160
+    browser.open("about:blank")
+    browser.open(f"{page}#cut", READY)  # not a link
+    assert browser.value(VERDICT) == "done"
+
+
+def test_a_file_is_dropped(browser: Browser) -> None:
+    browser.value(
+        "(() => { const data = new DataTransfer(); data.items.add(new File(['G1 F600 X3'], 'a.tap'));"
+        "dispatchEvent(new DragEvent('drop', {dataTransfer: data})); })()"
+    )
+    browser.wait("web.done > 1")
+    assert browser.value("passo.motion.axes[0].rises.length") == 240
+
+
+def test_keys_run_and_the_system_chooses_the_colors(tmp_path: Path, page: str) -> None:
+    with Browser(tmp_path / "browser", dark=True) as browser:
+        browser.open(page, READY)
+        assert browser.value("document.documentElement.dataset.theme") == "dark"
+        browser.value("(web.put('G1 F600 X3', 'G-code'), document.getElementById('lines').focus())")
+        press = "new KeyboardEvent('keydown', {key: 'Enter', ctrlKey: true, bubbles: true})"
+        browser.value(f"document.activeElement.dispatchEvent({press})")
+        browser.wait("web.done > 1")
+        assert browser.value("passo.motion.axes[0].rises.length") == 240
+
+
+BLOCKED = 0.1  # seconds
+
+
+def test_a_long_part_does_not_block_the_page() -> None:
+    measured = measure(2000)
+    assert measured.steps > 100_000
+    assert measured.longest_task < BLOCKED
 
 
 @pytest.mark.parametrize(
@@ -121,20 +249,16 @@ def test_the_tool_path_has_the_color_of_its_speed(tmp_path: Path) -> None:
         ("M30\nnonsense", "nothing moved"),
     ],
 )
-def test_bad_gcode_is_said(tmp_path: Path, program: str, said: str) -> None:
-    with Browser(tmp_path / "browser") as browser:
-        browser.open(build(tmp_path / "web").as_uri(), "passo")
-        run_gcode(browser, program)
-        assert browser.value("document.getElementById('verdict').textContent").startswith(said)
+def test_bad_gcode_is_said(browser: Browser, program: str, said: str) -> None:
+    assert verdict_of(browser, program).startswith(said)
+    if said.startswith("error"):
+        assert browser.value("passo") is None  # no charts of an earlier run
+        assert browser.value("document.getElementById('charts').textContent") == ""
 
 
 @pytest.mark.parametrize("line", ["move steps=1", "what"])
-def test_errors_are_said(tmp_path: Path, line: str) -> None:
-    with Browser(tmp_path / "browser") as browser:
-        browser.open(build(tmp_path / "web").as_uri(), "passo")
-        browser.value(f"document.querySelector('.lines').value = {line!r}")
-        browser.value("document.querySelector('.go').click()")
-        assert browser.value("document.getElementById('verdict').textContent").startswith("error")
+def test_errors_are_said(browser: Browser, line: str) -> None:
+    assert verdict_of(browser, line, "moves").startswith("error")
 
 
 def test_a_browser_without_webassembly_is_told(tmp_path: Path) -> None:

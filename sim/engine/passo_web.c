@@ -9,16 +9,20 @@
 #include "passo_engine.h"
 
 enum {
-	GAP = 64, /* clocks after a frame, and for each word */
+	GAP = 64, /* clocks after a frame of the console, and for each word */
 	GAP_PER_WORD = 4,
 	TEXT = 1 << 16,
 	EVENTS = 4096,
+	DRAIN = 1 << 15, /* events that are worth to be collected */
+	KINDS = 3,       /* of edges of an axis: rises of STEP, falls of STEP, DIR */
+	RUNNING = KINDS * PASSO_AXES_MAX,
+	LISTS,
 };
 
-/* An event for the page. */
-struct row {
-	double clock;
-	uint32_t step, dir, running, irq;
+/* Clocks of edges, which are low at first. */
+struct list {
+	double *clocks;
+	size_t count, room;
 };
 
 static struct {
@@ -26,9 +30,38 @@ static struct {
 	uint32_t clock_hz;
 	char text[TEXT];
 	size_t length;
-	struct row *rows;
-	size_t count, room;
+	struct passo_pin_event last;
+	struct list list[LISTS];
 } web;
+
+static void append(unsigned number, uint64_t clock)
+{
+	struct list *list = &web.list[number];
+
+	if (list->count == list->room) {
+		list->room = 2 * list->room + EVENTS;
+		list->clocks = realloc(list->clocks, list->room * sizeof *list->clocks);
+		if (!list->clocks)
+			abort();
+	}
+	list->clocks[list->count++] = (double)clock;
+}
+
+static void take(const struct passo_pin_event *event)
+{
+	const uint32_t step = (uint32_t)(event->step ^ web.last.step),
+		       dir = (uint32_t)(event->dir ^ web.last.dir);
+
+	for (unsigned axis = 0; (step | dir) >> axis != 0u; axis++) {
+		if (step >> axis & 1u)
+			append(KINDS * axis + (event->step >> axis & 1u ? 0u : 1u), event->clock);
+		if (dir >> axis & 1u)
+			append(KINDS * axis + 2u, event->clock);
+	}
+	if (event->running != web.last.running)
+		append(RUNNING, event->clock);
+	web.last = *event;
+}
 
 static void collect(void)
 {
@@ -37,38 +70,36 @@ static void collect(void)
 
 	do {
 		got = passo_engine_drain(web.engine, events, EVENTS);
-		if (web.count + got > web.room) {
-			web.room = 2 * web.room + got;
-			web.rows = realloc(web.rows, web.room * sizeof *web.rows);
-			if (!web.rows)
-				abort();
-		}
 		for (size_t i = 0; i < got; i++)
-			web.rows[web.count++] = (struct row){.clock = (double)events[i].clock,
-			    .step = (uint32_t)events[i].step,
-			    .dir = (uint32_t)events[i].dir,
-			    .running = (uint32_t)events[i].running,
-			    .irq = (uint32_t)events[i].irq};
+			take(&events[i]);
 	} while (got == EVENTS);
+}
+
+struct passo_engine *web_engine(void)
+{
+	return web.engine;
+}
+
+void web_run(uint64_t clocks)
+{
+	while (clocks) {
+		if (passo_engine_waiting(web.engine) > DRAIN)
+			collect();
+		clocks -= passo_engine_run(web.engine, clocks);
+	}
 }
 
 bool web_transfer(void *context, const uint32_t *mosi, uint32_t *miso, size_t count)
 {
 	(void)context;
 	passo_engine_transfer(web.engine, mosi, miso, count, GAP + GAP_PER_WORD * count);
-	collect();
 	return true;
 }
 
 uint32_t web_advance(void *context, uint32_t microseconds)
 {
-	uint64_t clocks = ((uint64_t)microseconds * web.clock_hz + 999999) / 1000000;
-
 	(void)context;
-	while (clocks) {
-		clocks -= passo_engine_run(web.engine, clocks);
-		collect();
-	}
+	web_run(((uint64_t)microseconds * web.clock_hz + 999999) / 1000000);
 	return (uint32_t)(passo_engine_clock(web.engine) * 1000000 / web.clock_hz);
 }
 
@@ -101,7 +132,10 @@ bool web_start(uint32_t axes, uint32_t clock_hz)
 
 	if (web.engine)
 		passo_engine_destroy(web.engine);
-	web.count = web.length = 0;
+	for (unsigned number = 0; number < LISTS; number++)
+		web.list[number].count = 0;
+	web.last = (struct passo_pin_event){0};
+	web.length = 0;
 	web.clock_hz = clock_hz;
 	web.engine = passo_engine_create(&config);
 	return web.engine != NULL;
@@ -121,12 +155,21 @@ EXPORT("said") size_t web_said(void)
 	return length;
 }
 
-EXPORT("rows") struct row *web_rows(void)
+/* Edges so far: list 3 * axis + 0 rises of STEP, 1 falls of STEP, 2 those of DIR; the last list: of running.
+ */
+EXPORT("count") size_t web_count(uint32_t list)
 {
-	return web.rows;
+	collect();
+	return web.list[list].count;
 }
 
-EXPORT("count") size_t web_count(void)
+/* Their clocks since reset. */
+EXPORT("clocks") double *web_clocks(uint32_t list)
 {
-	return web.count;
+	return web.list[list].clocks;
+}
+
+EXPORT("clock") double web_clock(void)
+{
+	return (double)passo_engine_clock(web.engine);
 }

@@ -8,12 +8,20 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "passo_command.h"
+#include "passo_engine.h"
+
 #define EXPORT(name) __attribute__((export_name(name)))
 
 /* A core after reset, with no events and no text; false if memory is short. */
 bool web_start(uint32_t axes, uint32_t clock_hz);
 
-/* The functions of a host, for struct passo_hardware and struct passo_terminal_caller. */
+struct passo_engine *web_engine(void);
+
+/* Runs the core. */
+void web_run(uint64_t clocks);
+
+/* The functions of a struct passo_terminal_caller. */
 bool web_transfer(void *context, const uint32_t *mosi, uint32_t *miso, size_t count);
 bool web_irq(void *context);
 /* Runs the core; returns the microseconds since its reset. */

@@ -10,7 +10,10 @@ enum {
 	LINE = 4096,
 };
 
+enum status { DONE, GOES_ON, STANDS = -1 /* nothing moves */ };
+
 static struct passo_terminal *terminal;
+static unsigned stands;
 static char line[LINE];
 
 /* Restarts; 0 if memory is short. */
@@ -27,33 +30,37 @@ EXPORT("open") int web_open(uint32_t axes, uint32_t clock_hz)
 	return terminal != NULL;
 }
 
-/* Polls until the motions have ended, or with `room` until a move has room. */
-static int pass(bool room)
+/* Polls until the motions have ended, or with `room` until a move has room; at most a number of rounds. */
+static enum status pass(bool room, uint32_t rounds)
 {
-	unsigned stands = 0;
-
-	for (;;) {
+	for (; rounds > 0u; rounds--) {
 		const enum passo_terminal_status status = passo_terminal_poll(terminal);
 
 		if (room ? !passo_terminal_owes(terminal) : status == PASSO_TERMINAL_IDLE)
-			return 1;
+			return DONE;
 		stands = status == PASSO_TERMINAL_WAITS ? stands + 1 : 0;
 		if (stands == PATIENCE)
-			return 0;
+			return STANDS;
 		web_advance(NULL, ROUND);
 	}
+	return GOES_ON;
 }
 
-/* Executes the line in the buffer; 0: nothing moves. */
-EXPORT("type") int web_type(uint32_t length)
+/* Types the line in the buffer; web_answer() executes it. */
+EXPORT("type") void web_type(uint32_t length)
 {
+	stands = 0;
 	passo_terminal_type(terminal, line, length);
-	return pass(true);
 }
 
-EXPORT("wait") int web_wait(void)
+EXPORT("answer") int32_t web_answer(uint32_t rounds)
 {
-	return pass(false);
+	return pass(true, rounds);
+}
+
+EXPORT("wait") int32_t web_wait(uint32_t rounds)
+{
+	return pass(false, rounds);
 }
 
 EXPORT("line") char *web_line(void)

@@ -1,35 +1,50 @@
 /* SPDX-License-Identifier: MIT
  * G-code on the web page, played as by `passo run` (sim/passo/part.py).
  */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "passo_program.h"
+#include "passo_rests.h"
 #include "passo_web.h"
 
 enum {
-	ROUND = 1000,       /* microseconds between two polls */
-	PATIENCE = 3600000, /* rounds without a line that are too many */
+	LOOPS_PER_SECOND = 1000, /* polls of the driver */
+	PATIENCE = 3600,         /* seconds without a line that are too many */
 	LOOK_AHEAD = 48,
 	AXES = 6,
 	SLEWS_PER_SECOND = 20, /* of hold and stop, from full speed */
 	NANOMETERS = 1000000,
+	REFUSED_MOST = 20, /* bad lines that are reported */
+	LINE = 256,
+	REST = 8, /* pulses that time passes for after the end */
 };
 
-/* The machine as the page gives it, in the order of sim/passo/web.py. */
+enum progress { DONE, GOES_ON, FAILED = -1 };
+
+struct limits {
+	double steps_per_mm, speed, acceleration, jump, jerk;
+};
+
+/* The machine as the page gives it, in the order of sim/passo/web_machine.py. */
 struct web_machine {
 	double clock_hz, axes, junction_deviation, arc_tolerance, profile;
 	double core_axes; /* a frame holds more lines for a core with fewer, which the ramps depend on */
 	double step_high, step_low, dir_setup, dir_hold; /* clocks */
-	struct {
-		double steps_per_mm, speed, acceleration, jump, jerk;
-	} axis[AXES];
+	double spindle_maximum, left_out, inputs, power;
+	double motors; /* 0: one for each axis, and no map */
+	double plus[PASSO_AXES_MAX], minus[PASSO_AXES_MAX];
+	struct limits mixed, axis[AXES];
 };
 
 static struct {
 	struct web_machine machine;
 	char *text;
-	size_t length;
+	size_t length, at; /* at: of the next line */
+	uint32_t lines;    /* taken */
+	uint32_t chords;
+	uint64_t quiet; /* clock of the last chord */
+	uint16_t inputs;
 	struct passo_program_settings settings;
 	struct passo_program program;
 	struct passo_path_item items[LOOK_AHEAD];
@@ -42,23 +57,40 @@ static uint64_t q32(double value)
 	return (uint64_t)(value * 4294967296.0 + 0.5);
 }
 
+static struct passo_path_axis limits(const struct limits *own)
+{
+	return (struct passo_path_axis){.steps_per_mm = q32(own->steps_per_mm),
+	    .speed = q32(own->speed),
+	    .acceleration = q32(own->acceleration),
+	    .jump = q32(own->jump),
+	    .jerk = q32(own->jerk)};
+}
+
 static void read_settings(void)
 {
 	const struct web_machine *machine = &web.machine;
 	const uint8_t axes = (uint8_t)machine->axes;
+	struct passo_path_settings *path = &web.settings.path;
 
 	web.settings = (struct passo_program_settings){
 	    .path = {.machine = {.clock_hz = (uint32_t)machine->clock_hz, .tick_log2 = 7, .axes = axes},
+		.motors.count = (uint8_t)machine->motors,
+		.mixed = limits(&machine->mixed),
 		.junction_deviation = q32(machine->junction_deviation),
 		.profile = (enum passo_profile)machine->profile},
-	    .gcode = {.axes = axes, .arc_tolerance = (uint32_t)(machine->arc_tolerance * NANOMETERS + 0.5)}};
+	    .gcode = {.axes = axes,
+		.arc_tolerance = (uint32_t)(machine->arc_tolerance * NANOMETERS + 0.5),
+		.spindle_maximum = (uint32_t)machine->spindle_maximum,
+		.left_out = (uint8_t)machine->left_out,
+		.inputs = (uint8_t)machine->inputs,
+		.power = machine->power != 0.0},
+	    .inputs = &web.inputs};
+	for (unsigned motor = 0; motor < PASSO_AXES_MAX; motor++) {
+		path->motors.plus[motor] = (uint8_t)machine->plus[motor];
+		path->motors.minus[motor] = (uint8_t)machine->minus[motor];
+	}
 	for (unsigned i = 0; i < axes; i++)
-		web.settings.path.axis[i] =
-		    (struct passo_path_axis){.steps_per_mm = q32(machine->axis[i].steps_per_mm),
-			.speed = q32(machine->axis[i].speed),
-			.acceleration = q32(machine->axis[i].acceleration),
-			.jump = q32(machine->axis[i].jump),
-			.jerk = q32(machine->axis[i].jerk)};
+		path->axis[i] = limits(&machine->axis[i]);
 }
 
 /* The line that begins at `*at`; moves on. */
@@ -71,12 +103,20 @@ static const char *next_line(size_t *at, size_t *length)
 	return line;
 }
 
-/* The number of the first bad line, whose error has been written; 0: all are good. Cuts the text at the end
- * of the program. */
+static void refuse(uint32_t number, const char *why)
+{
+	char text[LINE];
+
+	snprintf(text, sizeof text, "line %u: %s\n", (unsigned)number, why);
+	web_write(NULL, text);
+}
+
+/* Writes what is wrong with the lines; returns the number of bad ones. Cuts the text at the end of the
+ * program. */
 static uint32_t check(void)
 {
 	struct passo_gcode *gcode = &web.program.gcode;
-	uint32_t number = 0;
+	uint32_t number = 0, bad = 0;
 
 	passo_gcode_open(gcode, &web.settings.gcode);
 	for (size_t at = 0, length; at < web.length;) {
@@ -85,36 +125,24 @@ static uint32_t check(void)
 		const enum passo_gcode_error error = passo_program_line(&web.program, line, length);
 
 		number++;
-		if (error != PASSO_GCODE_OK)
-			web_write(NULL, passo_gcode_error_text(error));
+		if (error != PASSO_GCODE_OK && bad++ < REFUSED_MOST)
+			refuse(number, passo_gcode_error_text(error));
 		while (error == PASSO_GCODE_OK && passo_gcode_next(gcode, &action)) {
-			if (action.kind == PASSO_GCODE_PROBE) {
-				web_write(NULL, "no probe is fitted");
-				return number;
-			}
+			if (action.kind == PASSO_GCODE_PROBE && bad++ < REFUSED_MOST)
+				refuse(number, "no probe is fitted");
 			if (action.kind == PASSO_GCODE_END)
 				web.length = at;
 		}
-		if (error != PASSO_GCODE_OK)
-			return number;
 	}
-	return 0;
-}
-
-static uint32_t microseconds(void *context)
-{
-	return web_advance(context, 0);
-}
-
-static void wait(void *context, uint32_t duration)
-{
-	web_advance(context, duration + 1);
+	return bad;
 }
 
 static enum passo_error open_driver(void)
 {
-	const struct passo_hardware hardware = {
-	    .transfer = web_transfer, .microseconds = microseconds, .wait = wait, .irq = web_irq};
+	const struct passo_hardware hardware = {.transfer = passo_engine_host_transfer,
+	    .microseconds = passo_engine_host_microseconds,
+	    .wait = passo_engine_host_wait,
+	    .context = web_engine()};
 	const struct web_machine *machine = &web.machine;
 	const uint32_t slew = (uint32_t)machine->clock_hz / SLEWS_PER_SECOND;
 	const struct passo_axis_config config = {.step_high_ns = (uint32_t)machine->step_high,
@@ -122,10 +150,11 @@ static enum passo_error open_driver(void)
 	    .dir_setup_ns = (uint32_t)machine->dir_setup,
 	    .dir_hold_ns = (uint32_t)machine->dir_hold,
 	    .in_clocks = true};
+	const uint8_t motors = (uint8_t)(machine->motors != 0.0 ? machine->motors : machine->axes);
 	enum passo_error error = passo_open(&web.passo, &web.host, &hardware,
 	    &(struct passo_options){.clock_hz = (uint32_t)machine->clock_hz});
 
-	for (uint8_t axis = 0; axis < (uint8_t)machine->axes && error == PASSO_OK; axis++) {
+	for (uint8_t axis = 0; axis < motors && error == PASSO_OK; axis++) {
 		error = passo_configure_axis(&web.passo, axis, &config);
 		if (error == PASSO_OK)
 			error = passo_enable(&web.passo, axis, true);
@@ -137,31 +166,36 @@ static enum passo_error open_driver(void)
 	return error;
 }
 
-static enum passo_error play(void)
+/* One turn of the main loop, as in sim/passo/host_loop.py. */
+static enum passo_error turn(uint64_t period)
+{
+	struct passo_engine *engine = web_engine();
+	const uint64_t began = passo_engine_clock(engine);
+	const enum passo_error error = passo_program_poll(&web.program);
+	const uint64_t look = passo_engine_clock(engine) - began;
+	const bool rests = passo_program_rests(&web.program);
+
+	web_run(period);
+	if (rests && look > 0u)
+		passo_engine_pass_looks(engine, look + period, look);
+	return error;
+}
+
+static enum passo_error feed(void)
 {
 	enum passo_error error = PASSO_OK;
-	size_t at = 0, length;
-	uint32_t chords = 0;
+	size_t length;
 
-	for (unsigned quiet = 0; error == PASSO_OK && quiet < PATIENCE; quiet++) {
-		while (error == PASSO_OK && passo_program_is_ready(&web.program)) {
-			if (at < web.length) {
-				const char *line = next_line(&at, &length);
+	while (error == PASSO_OK && passo_program_is_ready(&web.program)) {
+		if (web.at < web.length) {
+			const char *line = next_line(&web.at, &length);
 
-				passo_program_line(&web.program, line, length);
-			} else {
-				passo_program_end(&web.program);
-			}
-			error = passo_program_poll(&web.program);
+			passo_program_line(&web.program, line, length);
+			web.lines++;
+		} else {
+			passo_program_end(&web.program);
 		}
-		if (error == PASSO_OK)
-			error = passo_program_poll(&web.program);
-		web_advance(NULL, ROUND);
-		if (passo_program_is_done(&web.program))
-			return error;
-		if (web.program.player.chords != chords)
-			quiet = 0;
-		chords = web.program.player.chords;
+		error = passo_program_poll(&web.program);
 	}
 	return error;
 }
@@ -180,21 +214,70 @@ EXPORT("program") char *web_program(uint32_t length)
 	return web.text;
 }
 
-/* Plays the program on the machine. 0: played; the number of a bad line, or -1: what is wrong was written. */
-EXPORT("play") int32_t web_play(void)
+/* Checks the program and opens the machine: web_go() follows, or what is wrong was written. */
+EXPORT("begin") int32_t web_begin(void)
 {
+	web.at = web.lines = web.chords = 0;
+	web.quiet = 0;
 	if (!web_start((uint32_t)web.machine.core_axes, (uint32_t)web.machine.clock_hz)) {
 		web_write(NULL, "out of memory");
-		return -1;
+		return FAILED;
 	}
 	read_settings();
-	const uint32_t bad = check();
-	if (bad > 0)
-		return (int32_t)bad;
-	enum passo_error error = open_driver();
-	if (error == PASSO_OK)
-		error = play();
+	if (check() > 0u)
+		return FAILED;
+	const enum passo_error error = open_driver();
 	if (error != PASSO_OK)
 		web_write(NULL, passo_error_text(error));
-	return error == PASSO_OK ? 0 : -1;
+	return error == PASSO_OK ? GOES_ON : FAILED;
+}
+
+/* Plays a number of turns of the main loop. */
+EXPORT("go") int32_t web_go(uint32_t turns)
+{
+	const struct web_machine *machine = &web.machine;
+	const uint64_t hz = (uint64_t)machine->clock_hz;
+
+	for (; turns > 0u; turns--) {
+		enum passo_error error = passo_program_is_done(&web.program) ? PASSO_OK : feed();
+
+		if (error == PASSO_OK)
+			error = turn(hz / LOOPS_PER_SECOND);
+		if (error != PASSO_OK) {
+			web_write(NULL, passo_error_text(error));
+			return FAILED;
+		}
+		if (passo_program_is_done(&web.program)) {
+			web_run((uint64_t)(REST
+			                   * (machine->step_high + machine->step_low + machine->dir_setup
+			                       + machine->dir_hold)));
+			return DONE;
+		}
+		if (web.program.player.chords != web.chords) {
+			web.chords = web.program.player.chords;
+			web.quiet = passo_engine_clock(web_engine());
+		}
+		if (passo_engine_clock(web_engine()) - web.quiet > PATIENCE * hz) {
+			web_write(NULL, "timeout: no motion for an hour of simulated time");
+			return FAILED;
+		}
+	}
+	return GOES_ON;
+}
+
+/* Lines taken so far, and bytes. */
+EXPORT("taken") uint32_t web_taken(void)
+{
+	return web.lines;
+}
+
+EXPORT("taken_bytes") uint32_t web_taken_bytes(void)
+{
+	return (uint32_t)web.at;
+}
+
+/* Bytes up to the end of the program. */
+EXPORT("length") uint32_t web_length(void)
+{
+	return (uint32_t)web.length;
 }

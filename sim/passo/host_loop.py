@@ -32,7 +32,7 @@ class HostLoop:
         self._events = [engine.drain()]
 
     def turn(self, poll: Callable[[], None], rests: Callable[[], bool] = lambda: False) -> None:
-        """Poll, and let time pass; if the host then `rests` (feed_rests), up to the poll that has news."""
+        """Poll, and let time pass; if the host then `rests` (passo_rests.h), up to the poll that has news."""
         began = self.engine.clock
         poll()
         look, idle = self.engine.clock - began, rests()

@@ -50,6 +50,7 @@ HEADERS = (
     paths.engine / "passo_judge.h",
     paths.engine / "passo_preview.h",
     paths.engine / "passo_csv.h",
+    paths.engine / "passo_rests.h",
     paths.console / "passo_decimal.h",
     paths.engine / "passo_cpu.h",
 )

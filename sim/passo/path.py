@@ -184,20 +184,6 @@ class Path:
             raise PlanError(ffi().string(name).decode(), ffi().string(text).decode())
 
 
-def feed_rests(feed: Any) -> bool:
-    """Whether polls of a `struct passo_path_feed` would only read the state until that has changed."""
-    c, passo = planner(), feed.passo
-    runs = passo.stream == c.PASSO_STREAM_RUNS
-    ends = passo.stream == c.PASSO_STREAM_NONE and passo.expects != c.PASSO_EXPECT_NOTHING
-    return (
-        (runs or ends)
-        and not feed.gave
-        and passo.ramps != c.PASSO_SUPPLY_DRY  # it may have some when the core is short of them
-        and passo.task.kind == c.PASSO_TASK_NONE
-        and c.passo_idle_time(passo) > 0
-    )
-
-
 class PathFeed:
     """A `struct passo_path_feed`: a path that is fed to a channel while its lines become known."""
 
@@ -221,7 +207,7 @@ class PathFeed:
     @property
     def rests(self) -> bool:
         """Whether polls would only read the state until that has changed, unless lines are added."""
-        return feed_rests(self.c)
+        return self._c.passo_feed_rests(self.c)
 
     def recover(self, positions: Sequence[int]) -> bool:
         """After a stop: go on with the rest of the path; False: its line is forgotten."""

@@ -7,7 +7,7 @@ from typing import Any
 from passo.driver import Driver, DriverError
 from passo.gcode import GcodeError, GcodeSettings
 from passo.native import ffi, planner
-from passo.path import LOOK_AHEAD, PathSettings, feed_rests
+from passo.path import LOOK_AHEAD, PathSettings
 
 
 class Program:
@@ -62,11 +62,7 @@ class Program:
     @property
     def rests(self) -> bool:
         """Whether polls would only read the state until that has changed."""
-        player, c = self.c.player, self._c
-        line = player.action.kind == c.PASSO_GCODE_LINE
-        waits = player.waits and not (line and c.passo_path_room(player.feed.path))
-        ended = self.c.ends and c.passo_player_is_ready(ffi().addressof(player))
-        return (waits or ended) and feed_rests(player.feed)
+        return self._c.passo_program_rests(self.c)
 
     def _check(self, call: str, error: int) -> None:
         self.driver.hardware.check()

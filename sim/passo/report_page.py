@@ -14,16 +14,21 @@ from passo.scene_page import scene_data
 from passo.scene_run import SceneRun
 
 FOLDER = Path(__file__).parent / "page"
+SHELL = FOLDER / "page.html"
 UPLOT = ("uplot/LICENSE", "uplot/uPlot.min.css", "uplot/uPlot.iife.min.js")
 SCRIPTS = (
+    "bytes.js",
     "curve.js",
     "motion.js",
     "trace.js",
     "time.js",
+    "course.js",
     "charts.js",
     "pins.js",
     "machine.js",
-    "side.js",
+    "histogram.js",
+    "path.js",
+    "player.js",
     "tables.js",
     "page.js",
 )
@@ -52,15 +57,18 @@ def write_data(name: str, data: tuple[dict[str, Any], str], path: Path) -> None:
     write_text(path, page(name, body))
 
 
-def page(title: str, body: str, scripts: tuple[str, ...] = SCRIPTS) -> str:
+def source_of(scripts: tuple[str, ...]) -> str:
+    """The text of scripts."""
+    return "\n".join((FOLDER / name).read_text() for name in scripts)
+
+
+def page(title: str, body: str) -> str:
     """A page with the styles and scripts in it; `body` comes last."""
     notice, styles, library = ((FOLDER / name).read_text() for name in UPLOT)
-    source = "\n".join((FOLDER / name).read_text() for name in scripts)
     return (
-        (FOLDER / "page.html")
-        .read_text()
+        SHELL.read_text()
         .replace("<!-- title -->", html.escape(title))
         .replace("/* styles */", styles + (FOLDER / "page.css").read_text())
-        .replace("/* scripts */", f"/*\nuPlot: {notice}*/\n{library}\n{source}")
+        .replace("/* scripts */", f"/*\nuPlot: {notice}*/\n{library}\n{source_of(SCRIPTS)}")
         .replace("<!-- body -->", body)
     )

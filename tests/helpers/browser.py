@@ -7,6 +7,8 @@ import os
 import shutil
 import subprocess
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Self
 
@@ -16,7 +18,7 @@ PROGRAM = "chromium-headless-shell"
 class Browser:
     """One page of a browser; `errors` are what its console said of failures."""
 
-    def __init__(self, folder: Path, width: int = 1400, height: int = 1000):
+    def __init__(self, folder: Path, width: int = 1400, height: int = 1000, dark: bool = False):
         program = shutil.which(PROGRAM)
         assert program, "there is no browser: run 'tools/setup.sh browser'"
         (command_in, self._out), (self._in, command_out) = os.pipe(), os.pipe()
@@ -35,11 +37,15 @@ class Browser:
         os.close(command_out)
         self._number, self._waiting = 0, b""
         self.errors: list[str] = []
+        self._events: list[Any] | None = None  # of a trace; the last one is None
         target = self._call("Target.createTarget", url="about:blank", session=None)["targetId"]
         self._session = None
         self._session = self._call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         for domain in ("Page", "Runtime", "Log"):
             self._call(f"{domain}.enable")
+        if dark:
+            dark_colors = {"name": "prefers-color-scheme", "value": "dark"}
+            self._call("Emulation.setEmulatedMedia", features=[dark_colors])
 
     def __enter__(self) -> Self:
         return self
@@ -88,6 +94,30 @@ class Browser:
                 button="none" if kind == "mouseMoved" and part == begin else "left", buttons=1,
             )  # fmt: skip
 
+    @contextmanager
+    def tasks(self) -> Iterator[list[float]]:
+        """Seconds of the processor that each task of the page's main thread takes; complete at the end."""
+        found: list[float] = []
+        self._events = []
+        self._call(
+            "Tracing.start", traceConfig={"includedCategories": ["disabled-by-default-devtools.timeline"]}
+        )
+        yield found
+        self._call("Tracing.end")
+        while self._events[-1:] != [None]:
+            self._note(self._read())
+        events, self._events = [event for event in self._events if event], None
+        main = {
+            (event["pid"], event["tid"])
+            for event in events
+            if event["name"] == "thread_name" and event["args"]["name"] == "CrRendererMain"
+        }
+        found += [
+            event.get("tdur", 0) / 1e6
+            for event in events
+            if event["name"] == "RunTask" and (event["pid"], event["tid"]) in main
+        ]
+
     def picture(self, path: Path) -> None:
         """Write what is visible to a PNG."""
         path.write_bytes(base64.b64decode(self._call("Page.captureScreenshot", format="png")["data"]))
@@ -107,7 +137,11 @@ class Browser:
 
     def _note(self, event: dict[str, Any]) -> None:
         params = event.get("params", {})
-        if event.get("method") == "Runtime.exceptionThrown":
+        if self._events is not None and event.get("method") == "Tracing.dataCollected":
+            self._events += params["value"]
+        elif self._events is not None and event.get("method") == "Tracing.tracingComplete":
+            self._events.append(None)
+        elif event.get("method") == "Runtime.exceptionThrown":
             details = params["exceptionDetails"]
             self.errors.append(details.get("exception", {}).get("description", details["text"]))
         elif event.get("method") == "Log.entryAdded" and params["entry"]["level"] == "error":

@@ -10,6 +10,7 @@ const theme = () => document.documentElement.dataset.theme;
 const colorOf = index => COLORS[theme()][index % 8];
 const styleOf = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const CLOCKS_MIN = 8;
+const FRAME = 25;  // ms that a short frame takes
 const MARGIN = 0.015;  // beside the motion, when all of it is shown
 
 function element(parent, tag, name = "", text = "") {
@@ -26,9 +27,26 @@ class View {
         this.motion = motion;
         this.hidden = new Set();
         this.listeners = [];
+        this.pointed = [];  // called when the pointer moves
+        this.pointer = null;  // its clock
+        this.peers = [this];  // views that show the same time
         this.charts = [];
-        this.limits = [-MARGIN * motion.clocks - CLOCKS_MIN, (1 + MARGIN) * motion.clocks + CLOCKS_MIN];
+        this.due = [];
+        this.whole = [0, motion.clocks];
+        this.limit(motion.clocks);
+    }
+
+    limit(clocks) {
+        this.limits = [-MARGIN * clocks - CLOCKS_MIN, (1 + MARGIN) * clocks + CLOCKS_MIN];
         [this.min, this.max] = this.limits;
+    }
+
+    // Views that show the same time.
+    static join(views) {
+        for (const view of views) {
+            view.peers = views;
+            view.limit(Math.max(...views.map(({ motion }) => motion.clocks)));
+        }
     }
 
     get axes() { return this.motion.axes.map((axis, n) => [axis, n]).filter(([, n]) => !this.hidden.has(n)); }
@@ -36,9 +54,25 @@ class View {
 
     set(min, max) {
         const [first, last] = this.limits, length = Math.min(last - first, Math.max(CLOCKS_MIN, max - min));
-        this.min = Math.max(first, Math.min(last - length, (min + max - length) / 2));
-        this.max = this.min + length;
-        this.changed();
+        const begin = Math.max(first, Math.min(last - length, (min + max - length) / 2));
+        for (const view of this.peers) {
+            [view.min, view.max] = [begin, begin + length];
+            view.changed();
+        }
+    }
+
+    // The way of the tool in what is shown.
+    get course() {
+        const min = Math.max(0, this.min), max = Math.min(this.motion.clocks, this.max);
+        if (this._course?.min !== min || this._max !== max) [this._course, this._max] = [new Course(this.motion, min, Math.max(max, min + 1)), max];
+        return this._course;
+    }
+
+    // Moves the pointer of all charts.
+    point(clock) {
+        this.pointer = clock;
+        for (const { plot } of this.charts) plot.setCursor({ left: plot.valToPos(clock, "x"), top: 1 }, true, false);
+        for (const listener of this.pointed) listener();
     }
 
     all() { this.set(...this.limits); }
@@ -53,16 +87,47 @@ class View {
     }
 
     toggle(n) {
-        if (!this.hidden.delete(n)) this.hidden.add(n);
-        this.changed();
+        for (const view of this.peers) {
+            if (!view.hidden.delete(n)) view.hidden.add(n);
+            view.changed();
+        }
     }
 
+    // Draws everything again, over as many frames as it takes: a browser paints what was drawn at the end of each. What
+    // update() returns draws on at each next().
     changed() {
-        if (this.waiting) return;
-        this.waiting = requestAnimationFrame(() => {
-            this.waiting = 0;
-            for (const listener of [...this.charts, ...this.listeners]) listener.update();
-        });
+        this.due = [];
+        [...this.charts, ...this.listeners].forEach(listener => this.redraw(listener));
+    }
+
+    redraw(listener) {
+        this.due.push({ next: () => this.begin(listener) });
+        this.pace = 1;
+        this.waiting ||= requestAnimationFrame(now => this.draw(now));
+    }
+
+    begin(listener) {
+        const rest = listener.update();
+        if (rest?.next) this.due.push(rest);
+        return { done: true };
+    }
+
+    // Twice as many steps as in a frame before that was short, one after a long one.
+    draw(now, before = now) {
+        this.pace = now - before > FRAME ? 1 : 2 * this.pace;
+        for (let n = 0; n < this.pace && this.due.length; n++) {
+            const step = this.due.shift();
+            if (!step.next().done) this.due.unshift(step);
+        }
+        this.waiting = this.due.length ? requestAnimationFrame(next => this.draw(next, now)) : 0;
+    }
+
+    // Whether all is drawn.
+    get isDrawn() { return !this.waiting; }
+
+    close() {
+        this.due = [];
+        for (const chart of this.charts) chart.plot.destroy();
     }
 }
 
@@ -85,6 +150,7 @@ class TimeChart {
         this.bounds = [0, 1];
         this.plot = new uPlot(this.options(), [[view.min, view.max], ...view.motion.axes.map(() => [null, null])], this.body);
         this.mouse();
+        this.touch();
         new ResizeObserver(() => this.resize()).observe(this.body);
         view.charts.push(this);
     }
@@ -115,7 +181,7 @@ class TimeChart {
                 drawClear: [chart => clipped(chart, (ctx, scale) => spec.drawBehind?.(ctx, scale))],
                 draw: [chart => clipped(chart, (ctx, scale) => this.draw(ctx, scale))],
                 setSelect: [chart => this.selected(chart)],
-                setCursor: [chart => this.read(chart.cursor.left < 0 ? null : chart.posToVal(chart.cursor.left, "x"))],
+                setCursor: [chart => this.hover(chart)],
             },
         };
     }
@@ -151,6 +217,25 @@ class TimeChart {
         }, { capture: true });
     }
 
+    // One finger moves, two zoom; up and down scrolls the page.
+    touch() {
+        const over = this.plot.over, view = this.view, fingers = new Map();
+        over.style.touchAction = "pan-y";
+        const placed = () => [...fingers.values()].map(x => x - over.getBoundingClientRect().left).sort((a, b) => a - b);
+        const lift = ({ pointerId }) => fingers.delete(pointerId);
+        over.addEventListener("pointerdown", ({ pointerType, pointerId, clientX }) => pointerType === "touch" && fingers.set(pointerId, clientX));
+        over.addEventListener("pointermove", ({ pointerId, clientX }) => {
+            if (!fingers.has(pointerId)) return;
+            const before = placed();
+            fingers.set(pointerId, clientX);
+            const now = placed(), perPixel = (view.max - view.min) / over.clientWidth;
+            const factor = now.length > 1 ? (before[1] - before[0]) / Math.max(1, now[1] - now[0]) : 1;
+            const fixed = view.min + before[0] * perPixel, min = fixed - now[0] * perPixel * factor;
+            view.set(min, min + (view.max - view.min) * factor);
+        });
+        for (const kind of ["pointerup", "pointercancel", "pointerleave"]) over.addEventListener(kind, lift);
+    }
+
     resize() {
         if (this.plot.width !== this.width) this.plot.setSize({ width: this.width, height: this.spec.height });
     }
@@ -173,7 +258,7 @@ class TimeChart {
         if (!(bounds[0] <= bounds[1])) [bounds[0], bounds[1]] = [0, 1];
         const room = (bounds[1] - bounds[0]) * 0.07 || Math.abs(bounds[0]) * 0.07 || 1;
         this.bounds = spec.bounds || [bounds[0] - room, bounds[1] + room];
-        this.plot.setData([grid, ...series], true);
+        this.plot.batch(() => this.plot.setData([grid, ...series], true));  // now, not at the end of the frame
     }
 
     draw(ctx, scale) {
@@ -199,6 +284,16 @@ class TimeChart {
         this.note.classList.toggle("decimated", most > 1);
     }
 
+    hover({ cursor, posToVal }) {
+        const clock = cursor.left < 0 ? null : posToVal(cursor.left, "x");
+        this.read(clock);
+        // That of the mouse is in one chart, that of the player in all: the first one tells.
+        if (cursor.event && clock !== null && this.view.pointer !== clock) {
+            this.view.pointer = clock;
+            for (const listener of this.view.pointed) listener();
+        }
+    }
+
     read(clock) {
         this.readout.textContent = "";
         if (clock === null) return;
@@ -219,6 +314,28 @@ function visible(view, name, factor) {
         found[1] = Math.max(found[1], most * factor(axis));
     }
     return found;
+}
+
+// Speed and acceleration along the way of the tool. `scales`: their largest values in all motions beside each other.
+function addCourse(parent, view, scales) {
+    const { unit } = view.course;
+    if (!unit) return;
+    const chart = (id, title, per, seconds, values, bounds) => new TimeChart(parent, view, {
+        id, title, unit: `${unit}/${per}`, height: 150, bounds, decimated: () => "", exact: `of the steps, over ${plain(1000 * seconds)} ms or more`,
+        drawBehind(ctx, scale) {
+            const { course } = view, own = values(course);
+            ctx.strokeStyle = styleOf("--accent");
+            ctx.lineWidth = 1.5 * devicePixelRatio;
+            ctx.beginPath();
+            own.forEach((value, k) => ctx.lineTo(scale.x(course.min + k * course.step), scale.y(value)));
+            ctx.stroke();
+        },
+        read(axis, clock) {
+            return axis === view.axes[0]?.[0] ? `${plain(values(view.course)[view.course.sample(clock)], 4)} ${unit}/${per}` : "";
+        },
+    });
+    chart("along", "Speed along the path", "s", SPEED_WINDOW, course => course.speed, [0, 1.07 * scales.speed || 1]);
+    chart("push", "Acceleration along the path", "s²", ACCELERATION_WINDOW, course => course.acceleration, [-1.07 * scales.acceleration || -1, 1.07 * scales.acceleration || 1]);
 }
 
 function addMotionCharts(parent, view) {

@@ -121,7 +121,7 @@ class Axis {
 
     // How far the ideal curve is ahead of each step at its clock, in steps; step q belongs at q + 1/2.
     _errors() {
-        this.errors = new Float64Array(this.rises.length).fill(NaN);
+        this.errors = new Float64Array(this.plans.length ? this.rises.length : 0).fill(NaN);
         for (const plan of this.plans) {
             const share = Math.abs(plan.share), end = Math.min(plan.first + plan.count, this.rises.length);
             for (let i = plan.first; i < end; i++) {
@@ -184,5 +184,16 @@ class Motion {
         this.planned = facts.runs.some(run => run.plans.length);  // otherwise there are no ideal curves
         this.clocks = Math.max(1, facts.clocks);
         this.axes = facts.axes.map((own, n) => new Axis(own, facts.runs[own.run], edges[n], facts.alpha_reset));
+    }
+
+    // A motion that a worker has made: structured clones forget their classes.
+    static from(data) {
+        const { machine, axes } = Object.setPrototypeOf(data, Motion.prototype);
+        if (machine) throw new Error("a machine cannot be cloned");
+        for (const axis of axes) {
+            Object.setPrototypeOf(axis, Axis.prototype);
+            for (const extremes of Object.values(axis.extremes)) Object.setPrototypeOf(extremes, Extremes.prototype);
+        }
+        return data;
     }
 }

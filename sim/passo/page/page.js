@@ -6,16 +6,14 @@ let passo = null;
 
 async function inflate(base64) {
     if (typeof DecompressionStream === "undefined") throw new Error("this browser is too old: it has no DecompressionStream");
-    const packed = Uint8Array.from(atob(base64), letter => letter.charCodeAt(0));
-    const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
-    return new Uint8Array(await new Response(stream).arrayBuffer());
+    return through(new Blob([fromBase64(base64)]), new DecompressionStream("deflate"));
 }
 
 function chooseTheme() {
     const dark = matchMedia("(prefers-color-scheme: dark)");
     const apply = name => {
         document.documentElement.dataset.theme = name;
-        passo?.view.changed();
+        for (const view of passo?.views ?? []) view.changed();
     };
     apply(dark.matches ? "dark" : "light");
     dark.addEventListener("change", () => apply(dark.matches ? "dark" : "light"));
@@ -42,9 +40,8 @@ function addSummary(motion) {
     if (motion.planned && summary.axes.some(axis => axis.pulses)) tile(plain(Math.max(0, ...summary.axes.map(axis => axis.largest_error_steps)), 2), "steps, largest timing error");
 }
 
-function addToolbar(bar, view) {
+function addToolbar(bar, view, player) {
     const { motion } = view, { hz } = motion;
-    bar.textContent = "";
     motion.axes.forEach((axis, n) => {
         const button = element(bar, "button", "axis on", `axis ${axis.name}`);
         button.onclick = () => {
@@ -77,30 +74,63 @@ function addToolbar(bar, view) {
             range.textContent = `${duration(view.max - view.min, hz, 4)} shown = ${grouped(Math.round(view.max - view.min))} clocks from clock ${grouped(Math.round(view.min))}`;
         },
     });
-    const keys = { "+": () => view.zoom(0.5), "-": () => view.zoom(2), 0: () => view.all(), ArrowLeft: () => view.pan(-0.25), ArrowRight: () => view.pan(0.25) };
+    const keys = { "+": () => view.zoom(0.5), "-": () => view.zoom(2), 0: () => view.all(), ArrowLeft: () => view.pan(-0.25), ArrowRight: () => view.pan(0.25), " ": () => player.toggle() };
     document.onkeydown = event => {
-        if (!keys[event.key] || event.ctrlKey || event.altKey || /INPUT|SELECT|TEXTAREA/.test(event.target.tagName)) return;
+        const typed = event.key === " " ? /INPUT|SELECT|TEXTAREA|BUTTON|SUMMARY|TR/ : /INPUT|SELECT|TEXTAREA/;
+        if (!keys[event.key] || event.ctrlKey || event.altKey || typed.test(event.target.tagName)) return;
         event.preventDefault();
         keys[event.key]();
     };
 }
 
-function showMotion(motion) {
-    addSummary(motion);
-    const [charts, side, tables] = ["charts", "side", "tables"].map(id => document.getElementById(id));
-    for (const part of [charts, side, tables]) part.textContent = "";
-    const view = new View(motion), { facts } = motion;
-    document.getElementById("curves").hidden = !motion.planned;
-    addToolbar(document.getElementById("toolbar"), view);
-    addMotionCharts(charts, view);
-    addPins(charts, view);
-    addMachine(charts, view);
-    const errors = motion.planned ? addErrors(charts, view) : null;
-    const histogram = errors && new Histogram(side, view, errors);
-    const path = motion.axes.length > 1 ? new ToolPath(side, view) : null;
-    if (facts.file) addTables(tables, view);
-    passo = { motion, view, errors, histogram, path };
-    view.changed();
+const PARTS = ["charts", "side", "tables"];
+
+function clearMotion() {
+    passo?.player.stop();
+    passo?.views.forEach(view => view.close());
+    passo = null;
+    for (const id of [...PARTS, "tiles", "toolbar"]) document.getElementById(id).textContent = "";
+}
+
+// The largest values along the path, of several motions.
+function scalesOf(views) {
+    const most = list => list.reduce((sum, value) => Math.max(sum, Math.abs(value)), 0);
+    const courses = views.map(view => view.course).filter(course => course.unit);
+    return { speed: most(courses.map(course => course.fastest)), acceleration: Math.max(0, ...courses.map(course => most(course.acceleration))) };
+}
+
+const pause = () => new Promise(resolve => setTimeout(resolve));
+
+// Shows a motion, or several beside each other at the same time, each with its `title`; pauses for the browser to paint.
+async function showMotions(motions, titles = []) {
+    clearMotion();
+    addSummary(motions[0]);
+    const [charts, side, tables] = PARTS.map(id => document.getElementById(id));
+    const views = motions.map(motion => new View(motion));
+    View.join(views);
+    document.getElementById("curves").hidden = !motions[0].planned;
+    const bar = document.getElementById("toolbar"), player = new Player(bar, views);
+    addToolbar(bar, views[0], player);
+    const scales = scalesOf(views), several = views.length > 1;
+    charts.classList.toggle("several", several);
+    const shown = [];
+    for (const [n, view] of views.entries()) {
+        const { motion } = view, column = element(charts, "div", "column"), beside = several || !motion.planned ? column : side;
+        if (several) element(column, "h2", "title", titles[n]);
+        const path = motion.axes.length > 1 ? new ToolPath(beside, view) : null;
+        if (!motion.planned) addCourse(column, view, scales);
+        await pause();
+        addMotionCharts(column, view);
+        await pause();
+        addPins(column, view);
+        addMachine(column, view);
+        const errors = motion.planned ? addErrors(column, view) : null;
+        shown.push({ motion, view, errors, histogram: errors && new Histogram(side, view, errors), path });
+        await pause();
+    }
+    if (motions[0].facts.file) addTables(tables, views[0]);
+    passo = { ...shown[0], views, player, shown };
+    for (const view of views) view.changed();
 }
 
 function showFailure(error) {
@@ -114,8 +144,9 @@ async function openReport() {
         const facts = JSON.parse(document.getElementById("facts").textContent);
         chooseTheme();
         const bytes = await inflate(document.getElementById("edges").textContent);
-        showMotion(new Motion(facts, unpack(bytes, facts.axes, facts.machine?.signals)));
-        requestAnimationFrame(() => requestAnimationFrame(() => { passo.ready = performance.now(); }));
+        await showMotions([new Motion(facts, unpack(bytes, facts.axes, facts.machine?.signals))]);
+        const wait = () => (passo.view.isDrawn ? (passo.ready = performance.now()) : requestAnimationFrame(wait));
+        wait();
     } catch (error) {
         showFailure(error);
     }

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: MIT
+"""A machine for G-code as the page of `make web` knows it."""
+
+from typing import Any
+
+import numpy as np
+
+from passo.machine_file import PROFILES, MachineFile
+from passo.path import PathAxis
+from passo.run import AXES_OF_CORES
+
+MOTORS_MOST = 8
+
+
+def web_machine(machine: MachineFile) -> dict[str, Any]:
+    """Its members: names and scales of motors, which axes they move, and `numbers` for C."""
+    count = len(machine.settings.axes)
+    rows = np.array(machine.settings.motors.map(count)).tolist()
+    return {
+        "numbers": numbers(machine),
+        "clock_hz": machine.clock_hz,
+        "letters": machine.letters,
+        "profile": machine.settings.profile,
+        "rows": rows,
+        "motors": [
+            {"name": name, "per_step": 1 / scale}
+            for name, scale in zip(machine.motors, machine.settings.scales, strict=True)
+        ],
+    }
+
+
+def numbers(machine: MachineFile) -> list[float]:
+    """The members of `struct web_machine` (sim/engine/passo_web_program.c)."""
+    settings, pins, gcode = machine.settings, machine.pins, machine.gcode
+    motors = len(machine.motors)
+    core_axes = next(axes for axes in AXES_OF_CORES if axes >= motors)
+    rest = [0] * (MOTORS_MOST - len(settings.motors.rows))
+    members = (
+        *(settings.clock_hz, len(settings.axes), settings.junction_deviation),
+        *(gcode.arc_tolerance, PROFILES.index(settings.profile), core_axes),
+        *(pins.step_high, pins.step_low, pins.dir_setup, pins.dir_hold),
+        *(gcode.spindle_maximum, gcode.left_out, gcode.inputs, gcode.power),
+        len(settings.motors.rows),
+        *(*settings.motors.bits(1), *rest, *settings.motors.bits(-1), *rest),
+        *_limits(settings.motors.mixed),
+        *(number for axis in settings.axes for number in _limits(axis)),
+    )
+    return [float(number) for number in members]
+
+
+def _limits(axis: PathAxis) -> tuple[Any, ...]:
+    return axis.steps_per_mm, axis.speed, axis.acceleration, axis.jump, axis.jerk
