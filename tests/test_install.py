@@ -21,7 +21,7 @@ from passo.toolchain import paths
 
 RELEASE = (paths.root / "VERSION").read_text().strip()
 SOURCES = ("rtl", *(f"c_model/{folder}" for folder in ("core", "planner", "gcode", "protocol")), "sim/engine")
-SOURCES = (*SOURCES, *(f"stm32_bridge/{folder}" for folder in ("driver", "console", "grbl")))
+SOURCES = (*SOURCES, *(f"stm32_bridge/{folder}" for folder in ("driver", "console", "grbl")), "linux")
 PACKAGES = ("sim/passo", "syn/passo_fpga", "stm32_bridge/passo_stm32")
 MOVES = """
 clock_hz = 16_000_000

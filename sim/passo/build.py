@@ -64,8 +64,8 @@ def rtl_sources(folder: Path = paths.rtl) -> list[Path]:
 
 
 def planner_library() -> Path:
-    """Planner, G-code interpreter, frame codec, link library and driver, as on a microcontroller."""
-    folders = (paths.planner, paths.gcode, paths.protocol, paths.driver, paths.grbl)
+    """Planner, G-code interpreter, frame codec, link library, driver, as on a microcontroller; Linux."""
+    folders = (paths.planner, paths.gcode, paths.protocol, paths.driver, paths.grbl, paths.linux)
     files = [*sources(*folders), paths.engine / "passo_csv.c", paths.engine / "passo_rests.c"]
     return library("planner", [*folders, paths.engine], files, "-O1")
 

