@@ -167,7 +167,7 @@ def test_few_polls_cost_little(profile: str) -> None:
 
 
 # What a tenth of the paths, a quarter, half, three quarters and nine tenths take at most, of the fastest
-# motion; and the tenth at least: around a lone corner the reference knows one acceleration on either side, and
+# motion; and the tenth at least: on either side of a lone corner the reference knows one acceleration, and
 # unrounded a corner is faster than it has it.
 SHARES = (0.1, 0.25, 0.5, 0.75, 0.9)
 TAKES = {
