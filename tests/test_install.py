@@ -44,6 +44,7 @@ def wheel() -> Path:
     top = [paths.root / name for name in ("pyproject.toml", "VERSION", "LICENSE")]
 
     def make(folder: Path) -> None:
+        shutil.rmtree(paths.root / "build" / "package", ignore_errors=True)  # setuptools keeps old names
         offline = ("--no-deps", "--no-index", "--no-build-isolation", "-q")
         pip = (sys.executable, "-m", "pip", "wheel", *offline, "-w", str(folder), str(paths.root))
         subprocess.run(pip, check=True)
