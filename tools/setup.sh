@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Installs the prerequisites of all other make targets: Debian packages, .venv, Python packages.
+# Installs the prerequisites of the other make targets: Debian packages, .venv, Python packages.
 #
 #     tools/setup.sh [SET...]
-# A SET is an optional set of Python packages in requirements-SET.txt (yosys, fpga, ...); or `firmware`:
+# A SET is an optional set of Python packages in requirements-SET.txt (dev, yosys, ...); or `firmware`:
 # Debian's compiler for the STM32; or `browser`: Debian's headless Chromium; or `vhdl`: Debian's GHDL; or `gcode`: rs274, the
 # interpreter of Debian's LinuxCNC; or `fuzz`: Debian's clang with libFuzzer; or `cncjs`: the controller of that
 # sender, where npm is. Safe to run again at any time: it installs only what is missing.

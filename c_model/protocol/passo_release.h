@@ -4,6 +4,6 @@
 #ifndef PASSO_RELEASE_H
 #define PASSO_RELEASE_H
 
-#define PASSO_RELEASE "0.2.0"
+#define PASSO_RELEASE "0.3.0"
 
 #endif

@@ -110,7 +110,7 @@ def cpu_library() -> Path:
     """The Cortex-M3 of the emulated microcontroller, on unicorn."""
     spec = importlib.util.find_spec("unicorn")
     if spec is None or spec.origin is None:
-        raise BuildError("the Python package 'unicorn' is missing: run 'make setup'")
+        raise BuildError("the Python package 'unicorn' is missing: run 'tools/setup.sh dev'")
     unicorn = Path(spec.origin).parent
     linked = unicorn / "lib" / "libunicorn.so.2"
     flags = [f"-isystem{unicorn / 'include'}", str(linked), f"-Wl,-rpath,{linked.parent}"]

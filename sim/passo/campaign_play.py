@@ -38,13 +38,22 @@ Player = Callable[[Case, str], Outcome]
 
 def play(case: Case, engine: str) -> Outcome:
     """Write the case to a file, read, plan and play it; an exception is a fault, too."""
-    with tempfile.TemporaryDirectory(prefix="passo_campaign_") as folder:
-        try:
-            return play_file(case.write(Path(folder)), engine)
-        except DifferenceError as error:
-            return Outcome(fault=Fault("difference", str(error)))
-        except Exception as error:
-            return Outcome(fault=Fault(type(error).__name__, str(error).partition("\n")[0]))
+    folder = Path(_folder().name)
+    try:
+        return play_file(case.write(folder), engine)
+    except DifferenceError as error:
+        return Outcome(fault=Fault("difference", str(error)))
+    except Exception as error:
+        return Outcome(fault=Fault(type(error).__name__, str(error).partition("\n")[0]))
+    finally:
+        for file in folder.iterdir():
+            file.unlink()
+
+
+@cache
+def _folder() -> tempfile.TemporaryDirectory[str]:
+    """One for each process: to remove a folder takes almost as long as to play a move."""
+    return tempfile.TemporaryDirectory(prefix="passo_campaign_")
 
 
 def play_file(path: Path, engine: str) -> Outcome:

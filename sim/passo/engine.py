@@ -30,7 +30,9 @@ def _untouched() -> Any:
 def moves_of(events: np.ndarray, bit: int) -> np.ndarray:
     """The step that the pins of a bit make at each of all events (EVENT): -1, 0, 1."""
     level, back = ((events[pin] >> np.uint64(bit) & np.uint64(1)).astype(np.int8) for pin in ("step", "dir"))
-    return (np.diff(level, prepend=np.int8(0)) == 1) * (1 - 2 * back)
+    rises = level.copy()
+    rises[1:] &= ~level[:-1]
+    return rises * (1 - 2 * back)
 
 
 class DifferenceError(Failure):

