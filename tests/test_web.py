@@ -148,6 +148,24 @@ def test_the_tool_path_turns_and_the_tool_moves(browser: Browser) -> None:
     assert browser.value("passo.player.playing") == 0
 
 
+def test_two_profiles_side_by_side(browser: Browser) -> None:
+    browser.value("document.getElementById('beside').value = 'cosine'")
+    assert verdict_of(browser, "G21 G90\nG1 X30 F6000\nX0") == "done"
+    browser.wait("passo.views.every(view => view.isDrawn)")
+    ramps = browser.value(
+        "passo.views.map(({ motion, course }) => [motion.clocks / motion.hz, Math.max(...course.acceleration)])"
+    )
+    (linear, flat), (cosine, steep) = ramps
+    assert linear == pytest.approx(2 * (0.3 + 0.1), abs=0.01)  # at 1000 mm/s^2
+    assert cosine > linear
+    assert max(flat, steep) < 1050
+    browser.value("passo.views[1].set(0, 1000)")  # both show the same time
+    assert browser.value("passo.views[0].max") == browser.value("passo.views[1].max")
+    browser.value("passo.player.go(500)")
+    assert browser.value("passo.views.map(view => view.pointer)") == [500, 500]
+    assert browser.value("document.querySelectorAll('#charts .column').length") == 2
+
+
 LONG = "G21 G90 F6000\n" + "G1 X100\nX0\n" * 200
 
 
