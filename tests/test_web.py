@@ -15,6 +15,7 @@ from passo.move_file import read_moves
 from passo.part import play_part, read_part
 from passo.plan import plan_file
 from passo.run import execute, parameters_for
+from passo.toolchain import paths
 from passo.web import EXAMPLE, build
 
 from benchmarks.page import measure
@@ -245,6 +246,21 @@ def test_keys_run_and_the_system_chooses_the_colors(tmp_path: Path, page: str) -
         browser.value(f"document.activeElement.dispatchEvent({press})")
         browser.wait("web.done > 1")
         assert browser.value("passo.motion.axes[0].rises.length") == 240
+
+
+AXE = paths.root / ".venv" / "axe" / "node_modules" / "axe-core" / "axe.min.js"
+FOUND = "axe.run().then(found => found.violations.map(own => [own.help, own.nodes.map(node => node.html)]))"
+
+
+@pytest.mark.skipif(not AXE.exists(), reason="axe is not installed: npm is missing")
+@pytest.mark.parametrize("dark", [False, True])
+@pytest.mark.parametrize("program", [PROGRAMS[0], "G1 X1"])
+def test_it_is_accessible(tmp_path: Path, page: str, program: str, dark: bool) -> None:
+    with Browser(tmp_path / "browser", dark=dark) as browser:
+        browser.open(page, READY)
+        verdict_of(browser, program)
+        browser.value(f"{AXE.read_text()}; 1")
+        assert browser.value(FOUND) == []
 
 
 BLOCKED = 0.1  # seconds
