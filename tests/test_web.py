@@ -15,6 +15,7 @@ from passo.move_file import read_moves
 from passo.part import play_part, read_part
 from passo.plan import plan_file
 from passo.run import execute, parameters_for
+from passo.toolchain import paths
 from passo.web import EXAMPLE, build
 
 from benchmarks.page import measure
@@ -148,6 +149,24 @@ def test_the_tool_path_turns_and_the_tool_moves(browser: Browser) -> None:
     assert browser.value("passo.player.playing") == 0
 
 
+def test_two_profiles_side_by_side(browser: Browser) -> None:
+    browser.value("document.getElementById('beside').value = 'cosine'")
+    assert verdict_of(browser, "G21 G90\nG1 X30 F6000\nX0") == "done"
+    browser.wait("passo.views.every(view => view.isDrawn)")
+    ramps = browser.value(
+        "passo.views.map(({ motion, course }) => [motion.clocks / motion.hz, Math.max(...course.acceleration)])"
+    )
+    (linear, flat), (cosine, steep) = ramps
+    assert linear == pytest.approx(2 * (0.3 + 0.1), abs=0.01)  # at 1000 mm/s^2
+    assert cosine > linear
+    assert max(flat, steep) < 1050
+    browser.value("passo.views[1].set(0, 1000)")  # both show the same time
+    assert browser.value("passo.views[0].max") == browser.value("passo.views[1].max")
+    browser.value("passo.player.go(500)")
+    assert browser.value("passo.views.map(view => view.pointer)") == [500, 500]
+    assert browser.value("document.querySelectorAll('#charts .column').length") == 2
+
+
 LONG = "G21 G90 F6000\n" + "G1 X100\nX0\n" * 200
 
 
@@ -227,6 +246,21 @@ def test_keys_run_and_the_system_chooses_the_colors(tmp_path: Path, page: str) -
         browser.value(f"document.activeElement.dispatchEvent({press})")
         browser.wait("web.done > 1")
         assert browser.value("passo.motion.axes[0].rises.length") == 240
+
+
+AXE = paths.root / ".venv" / "axe" / "node_modules" / "axe-core" / "axe.min.js"
+FOUND = "axe.run().then(found => found.violations.map(own => [own.help, own.nodes.map(node => node.html)]))"
+
+
+@pytest.mark.skipif(not AXE.exists(), reason="axe is not installed: npm is missing")
+@pytest.mark.parametrize("dark", [False, True])
+@pytest.mark.parametrize("program", [PROGRAMS[0], "G1 X1"])
+def test_it_is_accessible(tmp_path: Path, page: str, program: str, dark: bool) -> None:
+    with Browser(tmp_path / "browser", dark=dark) as browser:
+        browser.open(page, READY)
+        verdict_of(browser, program)
+        browser.value(f"{AXE.read_text()}; 1")
+        assert browser.value(FOUND) == []
 
 
 BLOCKED = 0.1  # seconds

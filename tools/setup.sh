@@ -3,7 +3,8 @@
 #
 #     tools/setup.sh [SET...]
 # A SET is an optional set of Python packages in requirements-SET.txt (dev, yosys, ...); or `firmware`:
-# Debian's compiler for the STM32; or `browser`: Debian's headless Chromium; or `vhdl`: Debian's GHDL; or `gcode`: rs274, the
+# Debian's compiler for the STM32; or `browser`: Debian's headless Chromium, and axe, where npm is; or `vhdl`: Debian's
+# GHDL; or `gcode`: rs274, the
 # interpreter of Debian's LinuxCNC; or `fuzz`: Debian's clang with libFuzzer; or `cncjs`: the controller of that
 # sender, where npm is. Safe to run again at any time: it installs only what is missing.
 # PYTHON selects the interpreter for the environment (default: python3).
@@ -38,7 +39,7 @@ headers="lz4.h:liblz4-dev zlib.h:zlib1g-dev"
 
 python_sets=()
 rs274=""
-cncjs=""
+npm_sets=()
 fuzz=""
 for name in "$@"; do
     if [ "$name" = firmware ]; then
@@ -46,6 +47,7 @@ for name in "$@"; do
         headers+=" newlib/newlib.h:libnewlib-arm-none-eabi"
     elif [ "$name" = browser ]; then
         tools+=" chromium-headless-shell:chromium-headless-shell"
+        npm_sets+=(axe)
     elif [ "$name" = vhdl ]; then
         tools+=" ghdl:ghdl"
     elif [ "$name" = fuzz ]; then
@@ -53,7 +55,7 @@ for name in "$@"; do
     elif [ "$name" = gcode ]; then
         rs274=.venv/rs274
     elif [ "$name" = cncjs ]; then
-        cncjs=.venv/cncjs
+        npm_sets+=(cncjs)
     else
         python_sets+=("$name")
     fi
@@ -123,13 +125,17 @@ missing_sets() {
 rs274_is_there() { [ -z "$rs274" ] || [ -x "$rs274/rs274" ]; }
 
 # Without npm there is nothing to install with: its tests say so. The lock file is the key.
-cncjs_is_there() {
-    [ -z "$cncjs" ] || ! command -v npm >/dev/null || cmp -s tests/cncjs/package-lock.json "$cncjs/installed.json"
+missing_npm_sets() {
+    local name
+    command -v npm >/dev/null || return 0
+    for name in "${npm_sets[@]}"; do
+        cmp -s "tests/$name/package-lock.json" ".venv/$name/installed.json" || echo "$name"
+    done
 }
 
 sets=$(missing_sets "${python_sets[@]}")
 missing=$(missing_tools)
-if [ -z "$missing" ] && [ -z "$sets" ] && venv_is_current && rs274_is_there && cncjs_is_there; then
+if [ -z "$missing" ] && [ -z "$sets" ] && venv_is_current && rs274_is_there && [ -z "$(missing_npm_sets)" ]; then
     step "Setup is complete."
     exit 0
 fi
@@ -256,13 +262,13 @@ if ! rs274_is_there; then
         "Check that the Debian mirror can be reached, then run 'make setup' again."
 fi
 
-if ! cncjs_is_there; then
-    step "Installing the controller of cncjs with npm (24 MB)"
-    mkdir -p "$cncjs"
-    cp tests/cncjs/package.json tests/cncjs/package-lock.json "$cncjs"
-    npm ci --prefix "$cncjs" --ignore-scripts --no-audit --no-fund --silent || fail "npm could not install cncjs." \
+for name in $(missing_npm_sets); do
+    step "Installing $name with npm"
+    mkdir -p ".venv/$name"
+    cp "tests/$name/package.json" "tests/$name/package-lock.json" ".venv/$name"
+    npm ci --prefix ".venv/$name" --ignore-scripts --no-audit --no-fund --silent || fail "npm could not install $name." \
         "Check the network and npm's own configuration (npm config list), then run 'make setup' again."
-    cp tests/cncjs/package-lock.json "$cncjs/installed.json"
-fi
+    cp "tests/$name/package-lock.json" ".venv/$name/installed.json"
+done
 
 step "Setup is complete."

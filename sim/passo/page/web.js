@@ -5,6 +5,7 @@
 const CLOCKS = [16e6, 72e6, 100e6];
 const GCODE = "G-code", CONSOLE = "moves";
 const SHOWN = 40000;  // characters of a program that can be edited; of a longer file the beginning is shown
+const PROFILES = ["linear", "cosine", "sigmoid", "jerk"], PROFILE = 4;  // its place in `struct web_machine`
 const LONG_LINK = 32000;
 const EXAMPLES = {
     "three axes": "move steps=6400,3840,-2560 profile=cosine total_time=0.4 ramp_time=0.2",
@@ -34,7 +35,7 @@ class Form {
         for (const name of [...Object.keys(EXAMPLES), "a part in G-code"]) element(by("example"), "option", "", name);
         by("language").onchange = () => this.chosen();
         by("lines").oninput = () => { this.whole = null; };
-        by("go").onclick = () => this.run();
+        by("go").onclick = by("beside").onchange = () => this.run();
         by("cancel").onclick = () => runner.cancel();
         by("example").onchange = ({ target }) => {
             const text = EXAMPLES[target.value];
@@ -108,10 +109,11 @@ class Form {
     }
 
     get state() {
-        return { language: this.language, lines: this.text, clock: Number(by("clock").value) };
+        return { language: this.language, lines: this.text, clock: Number(by("clock").value), beside: by("beside").value };
     }
 
-    set state({ language, lines, clock }) {
+    set state({ language, lines, clock, beside = "" }) {
+        if (PROFILES.includes(beside)) by("beside").value = beside;
         this.put(lines, language === GCODE ? GCODE : CONSOLE);
         if (CLOCKS.includes(clock)) by("clock").value = clock;
     }
@@ -135,7 +137,18 @@ class Form {
         this.say(`${plain(seconds, 4)} s of motion played${left}`);
     }
 
-    // Cancels what runs, and plays what is typed.
+    // The message that plays what is typed, with a profile instead of its own.
+    job(profile) {
+        if (this.language === GCODE) {
+            const { machine } = this, numbers = [...machine.numbers];
+            if (profile) numbers[PROFILE] = PROFILES.indexOf(profile);
+            return { kind: "play", text: this.text, machine: { ...machine, numbers } };
+        }
+        const text = profile ? this.text.replace(/profile=\w+/g, `profile=${profile}`) : this.text;
+        return { kind: "type", lines: text.split("\n").map(line => line.trim()).filter(Boolean), hz: Number(by("clock").value) };
+    }
+
+    // Cancels what runs, and plays what is typed; with another profile first, so that what is saved is the program's own.
     async run() {
         if (this.running) {
             this.runner.cancel();
@@ -143,9 +156,9 @@ class Form {
         }
         this.busy(true);
         try {
-            const lines = this.text.split("\n").map(line => line.trim()).filter(Boolean);
-            await this.show(await this.runner.ask(this.language === GCODE
-                ? { kind: "play", text: this.text, machine: this.machine } : { kind: "type", lines, hz: Number(by("clock").value) }));
+            const profile = by("beside").value;
+            const other = profile ? await this.runner.ask(this.job(profile)) : null;
+            await this.show(await this.runner.ask(this.job()), other, profile);
         } catch (error) {
             clearMotion();
             showFailure(error);
@@ -163,13 +176,14 @@ class Form {
         else this.say("");
     }
 
-    async show({ text, motion }) {
+    async show({ text, motion }, other, profile) {
+        const beside = other?.text.split("\n").find(line => line.startsWith("error"));
+        const wrong = [...text.split("\n").filter(line => line.startsWith("error")), ...(beside ? [`${profile}: ${beside}`] : [])];
         by("answer").textContent = text;
-        by("answer").hidden = !text;
-        const wrong = text.split("\n").filter(line => line.startsWith("error"));
-        if (motion) await showMotions([Motion.from(motion)]);
-        else clearMotion();
         for (const button of document.querySelectorAll(".save")) button.disabled = !motion;
+        if (!motion) clearMotion();
+        else if (other?.motion) await showMotions([motion, other.motion].map(Motion.from), ["as written", `profile ${profile}`]);
+        else await showMotions([Motion.from(motion)]);
         if (wrong.length) showVerdict(wrong.join("; "), "bad");
         else if (!motion) showVerdict("nothing moved", "stopped");
     }
