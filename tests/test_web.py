@@ -154,7 +154,8 @@ def test_two_profiles_side_by_side(browser: Browser) -> None:
     assert verdict_of(browser, "G21 G90\nG1 X30 F6000\nX0") == "done"
     browser.wait("passo.views.every(view => view.isDrawn)")
     ramps = browser.value(
-        "passo.views.map(({ motion, course }) => [motion.clocks / motion.hz, Math.max(...course.acceleration)])"
+        "passo.views.map(({ motion, course }) =>"
+        " [motion.clocks / motion.hz, Math.max(...course.acceleration)])"
     )
     (linear, flat), (cosine, steep) = ramps
     assert linear == pytest.approx(2 * (0.3 + 0.1), abs=0.01)  # at 1000 mm/s^2

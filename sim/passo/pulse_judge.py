@@ -65,7 +65,7 @@ def timing_faults(run: Run, axis: int, steps: Steps) -> Iterator[Fault]:
     """STEP high and low, DIR setup, hold and reversals, the direction of each pulse; first faults."""
     pins, clock = run.file.pins, run.pins["clock"].astype(np.int64) - run.start
     step, dir_ = (run.pins[pin] >> axis & 1 for pin in ("step", "dir"))
-    changes = clock[np.flatnonzero(step ^ np.concatenate([[0], step[:-1]]))]  # STEP is low at first, so is DIR
+    changes = clock[np.flatnonzero(step ^ np.concatenate([[0], step[:-1]]))]  # both are low at first
     rises, falls = changes[::2], changes[1::2]
     turns = clock[np.flatnonzero(dir_ ^ np.concatenate([[0], dir_[:-1]]))]
     if len(falls) != len(rises):
