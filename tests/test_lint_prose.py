@@ -92,7 +92,7 @@ def test_every_banned_phrase_is_a_pattern(rule: dict[str, str]) -> None:
 def test_make_lint_fails(tmp_path: Path) -> None:
     """Its recipe calls the check, which fails for a listed page with a planted word."""
     recipe = re.search(r"^lint: .*?\n\n", (paths.root / "Makefile").read_text(), re.M | re.S)
-    assert recipe and "\n\t@$(BIN)/python tools/lint_prose.py\n" in recipe[0]
+    assert recipe and "\n\t@$(CHECK) prose $(BIN)/python tools/lint_prose.py\n" in recipe[0]
     (tmp_path / "tools").mkdir()
     for name in ("lint_prose.py", "prose.toml"):
         shutil.copy(paths.tools / name, tmp_path / "tools")
