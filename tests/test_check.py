@@ -19,7 +19,7 @@ SAID = {
         "c_model/core/passo_core.c:3:1: error: code should be clang-formatted",
         "c_model/core/passo_core.c:3",
     ),
-    "prose": ("a version 1.5 of nothing\ndocs/path.md:12: 'colour'\ndocs/gcode.md:1: x", "docs/path.md:12"),
+    "prose": ("a version 1.5 of nothing\ndocs/path.md:12: 'wrong'\ndocs/gcode.md:1: x", "docs/path.md:12"),
 }
 
 
