@@ -40,6 +40,8 @@ DEBIAN = (
     "libnewlib-arm-none-eabi",
     "binutils-arm-none-eabi",
 )  # what images are made with
+# of a machine; the compiler also leaves files that contain paths
+SHIPPED = (".bin", ".bit", ".fs", ".hex", ".html", ".sh", ".svg", ".txt")
 COPYRIGHT = "/usr/share/doc/{}/copyright"
 
 
