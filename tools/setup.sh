@@ -3,10 +3,10 @@
 #
 #     tools/setup.sh [SET...]
 # A SET is an optional set of Python packages in requirements-SET.txt (dev, yosys, ...); or `firmware`:
-# Debian's compiler for the STM32; or `browser`: Debian's headless Chromium, and axe, where npm is; or `vhdl`: Debian's
-# GHDL; or `gcode`: rs274, the
-# interpreter of Debian's LinuxCNC; or `fuzz`: Debian's clang with libFuzzer; or `cncjs`: the controller of that
-# sender, where npm is. Safe to run again at any time: it installs only what is missing.
+# Debian's compiler for the STM32; or `browser`: Debian's headless Chromium and Firefox, and axe, where npm is; or
+# `vhdl`: Debian's GHDL; or `gcode`: rs274, the interpreter of Debian's LinuxCNC; or `fuzz`: Debian's clang with
+# libFuzzer; or `cncjs`: the controller of that sender, where npm is. Safe to run again at any time: it installs only
+# what is missing.
 # PYTHON selects the interpreter for the environment (default: python3).
 
 set -euo pipefail
@@ -46,7 +46,7 @@ for name in "$@"; do
         tools+=" arm-none-eabi-gcc:gcc-arm-none-eabi"
         headers+=" newlib/newlib.h:libnewlib-arm-none-eabi"
     elif [ "$name" = browser ]; then
-        tools+=" chromium-headless-shell:chromium-headless-shell"
+        tools+=" chromium-headless-shell:chromium-headless-shell firefox-esr:firefox-esr"
         npm_sets+=(axe)
     elif [ "$name" = vhdl ]; then
         tools+=" ghdl:ghdl"

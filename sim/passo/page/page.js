@@ -111,13 +111,16 @@ async function showMotions(motions, titles = []) {
     document.getElementById("curves").hidden = !motions[0].planned;
     const bar = document.getElementById("toolbar"), player = new Player(bar, views);
     addToolbar(bar, views[0], player);
+    await pause();
     const scales = scalesOf(views), several = views.length > 1;
     charts.classList.toggle("several", several);
     const shown = [];
     for (const [n, view] of views.entries()) {
         const { motion } = view, column = element(charts, "div", "column"), beside = several || !motion.planned ? column : side;
         if (several) element(column, "h2", "title", titles[n]);
+        await pause();
         const path = motion.axes.length > 1 ? new ToolPath(beside, view) : null;
+        await pause();
         if (!motion.planned) addCourse(column, view, scales);
         await pause();
         addMotionCharts(column, view);
