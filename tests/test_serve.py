@@ -2,9 +2,11 @@
 """The command `passo serve`: options, the edges it writes, what it refuses."""
 
 import socket
+import struct
 import subprocess
 import sys
-import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -12,9 +14,11 @@ import pytest
 from passo import Machine
 from passo.cli import BAD_INPUT, main
 from passo.engine import EVENT, moves_of
-from passo.native import planner
+from passo.grbl_setup import machine_at
+from passo.machine_file import read_machine
 from passo.toolchain import paths
 
+from tests.helpers.serving import serving
 from tests.test_linux import ARRIVED, example
 
 MACHINE = """clock_hz = 8_000_000
@@ -26,20 +30,25 @@ switches = ["home"]
 """
 
 
-def wait_for(server: subprocess.Popen[str], path: Path) -> None:
-    """Until it says its socket."""
-    assert server.stdout
-    while (line := server.stdout.readline()) and line != f"unix:{path}\n":
-        assert line.startswith(("Building ", "Built "))
+@contextmanager
+def serve(path: Path, *options: str) -> Iterator[subprocess.Popen[str]]:
+    """The command, from when it says its socket; killed at the end of the block if it has not ended."""
+    command = [sys.executable, "-m", "passo.cli", "serve", str(path), *options]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
+        try:
+            assert server.stdout
+            while (line := server.stdout.readline()) and line != f"unix:{path}\n":
+                assert line.startswith(("Building ", "Built "))
+            yield server
+        finally:
+            server.kill()
 
 
 @pytest.mark.parametrize("options", [["--engine", "model"], ["--engine", "both", "--axes", "4"]])
 def test_a_host_and_the_edges(tmp_path: Path, options: list[str]) -> None:
     """The command ends with its host and leaves no socket; the edges are in the file."""
     path, edges = tmp_path / "core", tmp_path / "edges.npy"
-    command = [sys.executable, "-m", "passo.cli", "serve", str(path), "--once", "--edges", str(edges)]
-    with subprocess.Popen([*command, *options], stdout=subprocess.PIPE, text=True) as server:
-        wait_for(server, path)
+    with serve(path, "--once", "--edges", str(edges), *options) as server:
         done = subprocess.run([example(), f"unix:{path}"], capture_output=True, text=True, timeout=300)
         assert (done.stdout, server.wait(60)) == (ARRIVED, 0)
     assert not path.exists()
@@ -48,36 +57,31 @@ def test_a_host_and_the_edges(tmp_path: Path, options: list[str]) -> None:
     assert int(np.abs(moves_of(events, 1)).sum()) == 2 * 3200
 
 
-def test_a_host_that_is_killed(tmp_path: Path) -> None:
-    """In real time the watchdog of the core stops the axes; the next host finds them where the pins say."""
-    path, edges, machine = tmp_path / "core", tmp_path / "edges.npy", tmp_path / "machine.toml"
-    machine.write_text(MACHINE)
-    command = [sys.executable, "-m", "passo.cli", "serve", str(path), "--edges", str(edges), "--real-time"]
-    host = (
-        "from passo import Machine\n"
-        f"motion = Machine.from_file({str(machine)!r}, 'unix:{path}').move(X=60)\n"
-        "print('it moves', flush=True)\n"
-        "motion.run()\n"
-    )
-    planner()  # builds it
-    with subprocess.Popen([*command, "--machine", str(machine)], stdout=subprocess.PIPE, text=True) as server:
-        wait_for(server, path)
-        with subprocess.Popen([sys.executable, "-c", host], stdout=subprocess.PIPE, text=True) as first:
-            assert first.stdout and first.stdout.readline() == "it moves\n"
-            time.sleep(2)  # of 6 seconds
-            first.kill()
-        time.sleep(1.5)  # the watchdog waits half a second
-        with Machine.from_file(machine, f"unix:{path}") as second:
-            found = second.steps()[0]
-            assert second.move(X=0).run().end["X"] == 0
-        server.terminate()
-        assert server.wait(60) == 0
-    events = np.load(edges)
-    ends = events["clock"][np.flatnonzero(np.diff(events["running"] & 1, prepend=0) == -1)]
-    moved = moves_of(events, 0)
+def test_a_host_that_dies(tmp_path: Path) -> None:
+    """The watchdog of the core stops the axes; the next host finds them where the pins say."""
+    path, text = tmp_path / "core", tmp_path / "machine.toml"
+    text.write_text(MACHINE)
+    with machine_at("model", read_machine(text)) as engine:
+        with serving(engine, path, keep=True) as server:
+            first = Machine.from_file(text, f"unix:{path}")
+            turns = first.move(X=60)._turns()
+            for _ in range(1000):
+                next(turns)
+            first.is_closed = True  # it does nothing any more, not even stop
+            first.core.close()
+            turns.close()
+            with socket.socket(socket.AF_UNIX) as idle:
+                idle.connect(str(path))
+                idle.sendall(struct.pack(">2I", 0, 1_500_000))  # the watchdog waits half a second
+                idle.recv(16, socket.MSG_WAITALL)
+            with Machine.from_file(text, f"unix:{path}") as second:
+                found = second.steps()[0]
+                assert second.move(X=0).run().end["X"] == 0
+        events = server.events
+    ends = events["clock"][np.diff((events["running"] & 1).astype(int), append=0) == -1]
     assert 0 < found < 4800
-    assert int(moved[events["clock"] <= ends[0]].sum()) == found
-    assert int(moved.sum()) == 0
+    assert int(moves_of(events, 0)[events["clock"] <= ends[0] + 8].sum()) == found
+    assert int(moves_of(events, 0).sum()) == 0
 
 
 def test_what_it_refuses(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -103,9 +107,6 @@ def test_a_second_server_at_a_socket(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert (
         capsys.readouterr().err == f"{path}: another program serves there: end it, or choose another path\n"
     )
-    with subprocess.Popen(
-        [sys.executable, "-m", "passo.cli", "serve", str(path)], stdout=subprocess.PIPE, text=True
-    ) as server:
-        wait_for(server, path)
+    with serve(path) as server:
         server.terminate()
         assert server.wait(60) == 0

@@ -81,11 +81,11 @@ class Server:
     ) -> None:
         """Answer until a condition holds, which is checked after each message, or each millisecond."""
         while not until():
-            for key, _ in self._selector.select(MILLISECOND):
-                if key.fileobj is self._listener:
-                    self._accept()
-                else:
-                    self._read()
+            ready = [key.fileobj for key, _ in self._selector.select(MILLISECOND)]
+            if self._host in ready:  # first: it may be gone, and the next one is not to be refused
+                self._read()
+            if self._listener in ready:
+                self._accept()
             self._catch_up(warn)
 
     def _accept(self) -> None:
