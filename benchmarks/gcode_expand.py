@@ -20,7 +20,7 @@ from benchmarks.gcode_passo import SPEEDS, Passo
 from benchmarks.gcode_rs274 import INCH, TOOLS, play_rs274
 
 OPTIONS = Options(
-    GcodeSettings(axes=6, spindle_maximum=SPEEDS),
+    GcodeSettings(axes=6, spindle_maximum=SPEEDS, turn_counts=1000),
     {tool: Tool(tool, tool / 100 * INCH) for tool in range(1, TOOLS)},
     at_zero=True,
     limit=20_000,

@@ -22,7 +22,7 @@ class Passo:
     """Passo's interpreter, line by line."""
 
     def __init__(self, axes: int = 3) -> None:
-        self.gcode = Gcode(GcodeSettings(axes=axes, spindle_maximum=SPEEDS))
+        self.gcode = Gcode(GcodeSettings(axes=axes, spindle_maximum=SPEEDS, turn_counts=1000))
         self.axes = axes
         self.motions: list[Motion] = []
         self.label = 0
@@ -49,6 +49,11 @@ class Passo:
                 c.passo_gcode_load(self.gcode.c, action.tool)
             elif action.kind in (c.PASSO_GCODE_LINE, c.PASSO_GCODE_PROBE) and arc is None:
                 self.motions.append(self._motion(action, None))
+            elif action.kind == c.PASSO_GCODE_THREAD:
+                self.motions.append(self._motion(action, None))
+                if action.rigid:
+                    back = tuple(n / NANOMETERS for n in self.gcode.position)
+                    self.motions.append(replace(self.motions[-1], end=back))
             if action.kind == c.PASSO_GCODE_PROBE:
                 self._touch(began)
         if arc is not None:

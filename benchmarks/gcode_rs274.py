@@ -69,6 +69,7 @@ def _position(numbers: Sequence[float], scale: float) -> np.ndarray:
 def _motions(calls: Sequence[str]) -> Iterator[Motion]:
     scale, unit, feed, outputs, plane, tolerance = 1.0, 1.0, 0.0, Outputs(), "XY", 0.0
     speed, highest, per_turn = 0.0, 0.0, False  # S; D of G96, 0 in G97; G95
+    pitch, at = 0.0, (0.0,) * AXES  # of G33, 0: none
     offsets = {
         name: np.zeros(AXES) for name in ("SET_G5X_OFFSET", "SET_G92_OFFSET", "USE_TOOL_LENGTH_OFFSET")
     }
@@ -83,7 +84,7 @@ def _motions(calls: Sequence[str]) -> Iterator[Motion]:
             surface = speed * (304.8 if scale == INCH else 1000)
             outputs = replace(outputs, rpm=min(FULL, highest, surface / around if around else FULL))
         made = Motion(label, outputs=outputs, tolerance=tolerance, unit=unit)
-        minutely = feed * outputs.rpm if per_turn else feed
+        minutely = pitch * outputs.rpm or (feed * outputs.rpm if per_turn else feed)
         match name:
             case "USE_LENGTH_UNITS":
                 scale = INCH if "INCHES" in text else 1.0
@@ -105,16 +106,23 @@ def _motions(calls: Sequence[str]) -> Iterator[Motion]:
                 offsets[name] = _position(numbers[1:], scale)
             case "SET_G92_OFFSET" | "USE_TOOL_LENGTH_OFFSET":
                 offsets[name] = _position(numbers, scale)
+            case "START_SPEED_FEED_SYNC":
+                pitch = numbers[0] * scale
+            case "STOP_SPEED_FEED_SYNCH":
+                pitch = 0.0
+            case "RIGID_TAP":
+                depth = (*(np.array(numbers[:3]) * scale + origin[:3]).tolist(), *at[3:])
+                yield from (replace(made, end=end, feed=minutely) for end in (depth, at))
             case "STRAIGHT_TRAVERSE" | "STRAIGHT_FEED" | "STRAIGHT_PROBE":
-                end = tuple((_position(numbers, scale) + origin).tolist())
+                at = tuple((_position(numbers, scale) + origin).tolist())
                 probes = name == "STRAIGHT_PROBE"
                 rapid = name == "STRAIGHT_TRAVERSE"
-                yield replace(made, end=end, feed=0 if rapid else minutely, probes=probes)
+                yield replace(made, end=at, feed=0 if rapid else minutely, probes=probes)
             case "ARC_FEED":
                 axes = PLANES[plane]
                 end_of = dict(zip(axes, (numbers[0], numbers[1], numbers[5]), strict=True))
                 linear = [end_of[axis] for axis in range(3)]
-                end = tuple((_position(linear + numbers[6:], scale) + origin).tolist())
+                at = end = tuple((_position(linear + numbers[6:], scale) + origin).tolist())
                 center = tuple(numbers[2 + i] * scale + origin[axes[i]] for i in range(2))
                 turns = {"plane": axes, "clockwise": numbers[4] < 0}
                 yield replace(made, end=end, feed=minutely, center=center, **turns)

@@ -9,6 +9,7 @@ import tomllib
 from pathlib import Path
 
 from generated import is_check, keep
+from passo.expand.refusals import ADVICE, LETTERS
 
 ROOT = Path(__file__).resolve().parent.parent
 SOURCE = ROOT / "spec" / "gcode_differences.toml"
@@ -25,6 +26,14 @@ compares Passo and LinuxCNC.
 |---|---|---|---|---|
 """
 
+REFUSED = """
+## Refused words
+
+Error 20 or 23 of a firmware; `passo run`, `passo preview` and `passo expand` say so themselves.
+
+| word | norm | what to do |
+|---|---|---|
+"""
 TABLES = "docs/gcode.md"
 BEGIN, END = "<!-- report: make generate writes {} from here -->\n", "<!-- to here -->"
 # Images, as the makefile of the firmware calls them; what is left out on the PC: nothing.
@@ -124,7 +133,21 @@ def write_page() -> str:
     """A row for each program."""
     rows = tomllib.loads(SOURCE.read_text(encoding="utf-8"))["rows"]
     lines = [(" ".join(f"`{line}`" for line in program), *told) for program, *told in rows]
-    return HEAD + "".join(f"| {' | '.join(row)} |\n" for row in lines)
+    return HEAD + "".join(f"| {' | '.join(row)} |\n" for row in lines) + REFUSED + refused_rows()
+
+
+def refused_rows() -> str:
+    """What passo.expand.refusals says."""
+    rows = []
+    for letter, codes, norm, advice in ADVICE:
+        whole = 1 if letter == "G" else 10  # M has no tenths
+        ends = dict.fromkeys(code // whole * whole for code in (codes.start, codes.stop - 1))
+        words = [f"`{letter}{code / 10:g}`" for code in ends]
+        rows.append(f"| {' to '.join(words)} | {norm} | {advice} |\n")
+    for letter, told in LETTERS.items():
+        norm, advice = told.split(": ", 1)
+        rows.append(f"| `{letter}` | {norm} | {advice} |\n")
+    return "".join(rows)
 
 
 if __name__ == "__main__":

@@ -52,7 +52,9 @@ static void act(struct passo_path_planner *path, struct passo_gcode *gcode,
 		must(action->input < gcode->settings.inputs
 		         && (action->microseconds > 0 || action->wanted == PASSO_GCODE_WANTED_NOW),
 		    "no input", text);
-	if (action->kind != PASSO_GCODE_LINE)
+	if (action->kind == PASSO_GCODE_THREAD)
+		must(gcode->settings.turn_counts > 0 && action->pitch > 0, "no thread", text);
+	if (action->kind != PASSO_GCODE_LINE && action->kind != PASSO_GCODE_THREAD)
 		return;
 	must(action->feed > 0, "no feed", text);
 	for (unsigned axis = 0; axis < gcode->settings.axes; axis++)
@@ -88,8 +90,11 @@ static void execute(
 	passo_gcode_position last;
 	unsigned count = 0;
 	for (; count < CHORDS_MAX && passo_gcode_next(gcode, &action); count++) {
-		if (action.kind == PASSO_GCODE_LINE || action.kind == PASSO_GCODE_PROBE) {
-			memcpy(last, action.target, sizeof last);
+		if (action.kind == PASSO_GCODE_LINE || action.kind == PASSO_GCODE_PROBE
+		    || action.kind == PASSO_GCODE_THREAD) {
+			const bool back = action.kind == PASSO_GCODE_THREAD && action.rigid;
+
+			memcpy(last, back ? gcode->position : action.target, sizeof last);
 			moved = true;
 		}
 		act(path, gcode, &action, line.text);

@@ -25,7 +25,8 @@ static size_t any_line(char *text)
 	    "G54", "G59", "G61", "G80", "G90", "G91", "G91.1", "G92", "G92.1", "G93", "G94", "M0", "M2", "M3",
 	    "M5", "M8", "M30", "M6", "M61Q3", "M62P1", "M63", "M64P3", "M65P0", "M66P1L3Q2", "M66P0",
 	    "M67E0Q50", "M68E0", "G43", "G43H2", "G43.2H1", "G10L1P1", "G10L1P2Z3", "G73", "G81", "G82",
-	    "G83Q1", "G89", "G98", "G99", "G61.1", "G64P.1", "G", "M", "G38.9", "(", ")", ";", "/", "%"};
+	    "G83Q1", "G89", "G33K1", "G33.1", "G7", "G8", "G95", "G96S5", "G97", "M4S9", "G98", "G99",
+	    "G61.1", "G64P.1", "G", "M", "G38.9", "(", ")", ";", "/", "%"};
 	size_t length = 0;
 
 	if (below(20) == 0) {
@@ -38,7 +39,7 @@ static size_t any_line(char *text)
 			length += (size_t)sprintf(
 			    text + length, "%s", COMMANDS[below(sizeof COMMANDS / sizeof *COMMANDS)]);
 		} else {
-			text[length++] = "XYZABCIJKRFPLSTNHQE"[below(19)];
+			text[length++] = "XYZABCIJKRFPLSTNHQED"[below(20)];
 			length += add_number(text + length);
 		}
 	}
@@ -51,8 +52,15 @@ static void fuzz(void)
 	struct passo_gcode gcode;
 
 	begin(&path, &gcode,
-	    &(struct passo_gcode_settings){(uint8_t)(1 + below(6)), 1 + below(1u << below(20)), below(20000),
-		below(2) != 0u, below(2000), 0, (uint8_t)below(8), below(2) != 0u});
+	    &(struct passo_gcode_settings){.axes = (uint8_t)(1 + below(5)),
+		.arc_tolerance = 1 + below(1u << below(20)),
+		.spindle_maximum = below(20000),
+		.laser = below(2) != 0u,
+		.spindle_minimum = below(2000),
+		.left_out = below(4) == 0u ? 2u : 0u,
+		.inputs = (uint8_t)below(8),
+		.power = below(2) != 0u,
+		.turn_counts = below(2)});
 	for (unsigned count = below(200); count > 0; count--) {
 		char text[TEXT] = "";
 		const size_t length = any_line(text);

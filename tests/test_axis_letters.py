@@ -21,7 +21,7 @@ from tests.helpers.grbl_console import GrblConsole
 from tests.test_firmware_cb import HZ, PARAMETERS
 from tests.test_gcode import run
 
-LETTERS = ["XYZC", "XYZB", "XA", "XYA", "XYC", "XYZAC", "A", "XBC"]
+LETTERS = ["XYZC", "XYZB", "XA", "XYA", "XYC", "XYZAC", "A", "XBC", "XZ", "XZC"]
 STEPS = {"X": 80, "Y": 100, "Z": 400, "A": 10, "B": 20, "C": 40}
 
 
@@ -62,7 +62,10 @@ def test_each_axis_has_its_letter(tmp_path: Path, letters: str) -> None:
         ("XA", "G2 X2 I1 F9", False), ("XYA", "G18 G2 X2 I1 F9", False), ("A", "G2 A2 I1 F9", False),
         ("XYZC", "G81 X1 Z-1 R1 F9", True), ("XYA", "G81 X1 R1 F9", False), ("XAB", "G81 X1 R1 F9", False),
         ("XYZC", "G43.1 Z1", True), ("XYA", "G43.1 A1", False), ("XA", "G38.2 A3 F9", True),
-        ("XYZC", "G81 X1 Z-1 R1 F9 C1", False),
+        ("XYZC", "G81 X1 Z-1 R1 F9 C1", False), ("XZ", "G2 X2 I1 F9", True), ("XZC", "G3 Z2 K1 F9 C3", True),
+        ("XZ", "G17 G2 X2 I1 F9", False), ("XZ", "G19 G2 Z2 K1 F9", False), ("XZ", "G2 X2 J1 F9", False),
+        ("XZ", "G17 G81 X1 Z-1 R1 F9", True), ("XZ", "G81 X1 R1 F9", False), ("XZ", "G43.1 Z1", True),
+        ("XZ", "G10 L1 P1 Z1", True), ("XZ", "G10 L1 P1 X1", False), ("XZC", "G19 G81 X-1 Z2 R1 F9", True),
     ],
 )  # fmt: skip
 def test_planes_and_lengths_are_of_x_y_z(letters: str, line: str, taken: bool) -> None:
@@ -83,7 +86,20 @@ def test_a_tool_length_is_none_of_another_axis() -> None:
     assert gcode.position == (0, 0, NANOMETERS)
 
 
-@pytest.mark.parametrize("letters", ["XYZC", "XA"])
+def test_a_lathe_has_the_plane_of_x_and_z() -> None:
+    """At first, and after the end of a program; its lengths are those of Z, and it drills along Z."""
+    gcode = Gcode(GcodeSettings(axes=2, letters="XZ", arc_tolerance=0.1))
+    run(gcode, "G10 L1 P1 Z5", "G43 H1", "G0 X10 Z0")
+    assert gcode.position == (10 * NANOMETERS, 5 * NANOMETERS)
+    run(gcode, "G49", "G0 X0 Z0")
+    (*_, middle, end) = run(gcode, "G2 X10 Z10 K10 F9")
+    assert list(end.target[0:2]) == [10 * NANOMETERS, 10 * NANOMETERS] and middle.target[1] < middle.target[0]
+    holes = [list(action.target[0:2]) for action in run(gcode, "G17 G81 X3 Z-2 R1")]
+    assert holes[-2:] == [[3 * NANOMETERS, -2 * NANOMETERS], [3 * NANOMETERS, 10 * NANOMETERS]]
+    run(gcode, "M2", "G2 X10 Z10 R30 F9")
+
+
+@pytest.mark.parametrize("letters", ["XYZC", "XA", "XZ"])
 def test_a_part(tmp_path: Path, letters: str) -> None:
     """`passo run`: the steps of each motor."""
     machine = read_machine(file_of(tmp_path, letters))
@@ -135,11 +151,11 @@ def test_the_console(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("letters", "said"),
     [
-        ("XZ", 'axis 2: name must be "Y", "A", "B" or "C", not'),
+        ("XZY", 'axis 3: name must be "A", "B" or "C", not'),
         ("XYZCA", "axis 5: name must be left out, C is the last one, not"),
         ("YZ", 'axis 1: name must be "X", "A", "B" or "C", not'),
         ("XYZBA", 'axis 5: name must be "C", not'),
-        ("XX", 'axis 2: name must be "Y", "A", "B" or "C", not'),
+        ("XX", 'axis 2: name must be "Y", "Z", "A", "B" or "C", not'),
     ],
 )
 def test_a_wrong_order_is_refused(tmp_path: Path, letters: str, said: str) -> None:

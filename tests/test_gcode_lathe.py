@@ -8,6 +8,7 @@ from itertools import pairwise
 import pytest
 from passo import random_cases
 from passo.gcode import NANOMETERS, Gcode, GcodeError, GcodeSettings
+from passo.native import planner
 
 from tests.test_gcode import LINE, RAPID, run
 
@@ -108,3 +109,22 @@ def test_surface_speed_in_feet_and_back_to_rpm() -> None:
     assert pieces(gcode, "S300 G0 X2")[0][3] == pytest.approx(300, abs=0.1)
     assert refused(gcode, "G96") == 28 and refused(gcode, "D5") == 36 and refused(gcode, "G97 D5") == 36
     assert refused(gcode, "G96 S1 D-1") == 4 and refused(gcode, "G96 G97 S1") == 21
+
+
+def test_a_thread_is_in_step_with_the_spindle() -> None:
+    """Its feed is that of the speed; G33.1 comes back; every word is checked."""
+    gcode = Gcode(GcodeSettings(spindle_maximum=FULL, turn_counts=1000))
+    run(gcode, "G20 M4 S600 G0 X1 Z0")
+    (action,) = run(gcode, "G33 Z-1 X0 K.1")
+    assert action.kind == planner().PASSO_GCODE_THREAD and not action.rigid
+    assert action.pitch == 2_540_000 and action.feed / 2**32 == pytest.approx(25.4)
+    assert list(action.target[0:3]) == [0, 0, -25_400_000] == list(gcode.position)
+    (action,) = run(gcode, "G21 G33.1 Z5 K2")
+    assert action.rigid and action.target[2] == 5_000_000 and gcode.position[2] == -25_400_000
+    assert action.speed == 600_000_000 and run(gcode, "G91 G33 Z0 K1") == []
+    for line, number in {
+        "G33 Z1": 28, "G33 K1": 26, "G33 Z1 K0": 4, "G33 Z1 K-1": 4, "M5 G33 Z1 K1": 42, "S0 Z1 K1": 42,
+        "G33 Z1 K1 P1": 36, "G53 G33 Z1 K1": 30, "G33 Z999999999 Z1 K1": 25, "G33.2 Z1 K1": 20,
+    }.items():  # fmt: skip
+        assert refused(gcode, line) == number
+    assert refused(lathe("M3 S1"), "G33 Z1 K1") == 20

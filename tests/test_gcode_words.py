@@ -31,7 +31,7 @@ LINES = {
     "X": "X1", "Y": "Y1", "Z": "Z1", "A": "A1", "B": "B1", "C": "C1", "F": "F100", "S": "S10", "T": "T5",
     "N": "N7",
     "I": "G2 X10 I5 F100", "J": "G2 X10 Y0 I5 J0 F100", "K": "G18 G2 X10 Z0 I5 K0 F100",
-    "R": "G2 X10 R9 F100", "G96": "G96 S5", "D": "G96 S5 D9",
+    "R": "G2 X10 R9 F100", "G33": "G33 Z1 K1", "G33.1": "G33.1 Z1 K1", "G96": "G96 S5", "D": "G96 S5 D9",
     "L": "G10 L20 P1 X5", "P": "G4 P2", "Q": "G64 P1 Q0.5",
 }  # fmt: skip
 BEFORE = {
@@ -39,6 +39,7 @@ BEFORE = {
     "G49": ["G43.1 Z3"], "M5": ["M3"], "M9": ["M8"], "G92.1": ["G92 X9"], "G2": ["F100"], "G28": ["G0 X4"],
     "G43": ["G10 L1 P5 Z3"], "G43.2": ["G10 L1 P5 Z3"], "H": ["G10 L1 P5 Z3"],
     "G98": ["G99"], "G30": ["G0 X4"], "G28.1": ["G0 X4"], "G30.1": ["G0 X4"],
+    "G33": ["M3 S9"], "G33.1": ["M3 S9"],
     "G8": ["G7"], "G97": ["G96 S5"], "M63": ["M62 P1"], "M65": ["M64 P1"],
 }  # fmt: skip
 IDLE = {"G40", "G91.1", "M1"}  # of which there is nothing else, and which do nothing
@@ -47,7 +48,7 @@ IDLE = {"G40", "G91.1", "M1"}  # of which there is nothing else, and which do no
 def refused(line: str) -> int:
     """The number of the error; 0: none."""
     try:
-        run(Gcode(GcodeSettings(axes=6)), line)
+        run(Gcode(GcodeSettings(axes=6, turn_counts=1000)), line)
     except GcodeError as error:
         return error.number
     return 0
@@ -84,7 +85,7 @@ def test_the_groups_are_those_of_the_table() -> None:
 def test_a_word_does_something(word: str) -> None:
     """It acts, or changes a mode or a value; the same line without it is refused or does something else."""
     line = LINES.get(word, word)
-    gcode = Gcode(GcodeSettings(axes=6))
+    gcode = Gcode(GcodeSettings(axes=6, turn_counts=1000))
     for before in BEFORE.get(word, []):
         run(gcode, before)
     at_first = state(gcode)

@@ -184,7 +184,7 @@ WRONG = [
         "axis 1: switches must be an array of home, limit_low, limit_high",
     ),
     ('home = "low"', 'home = "left"', 'axis 1: home must be "low" or "high", not'),
-    ('name = "Y"', 'name = "Z"', 'axis 2: name must be "Y", "A", "B" or "C", not'),
+    ('name = "Y"', 'name = "Z"', 'axis 3: name must be "A", "B" or "C", not'),
     (
         'drive = "DM542"',
         'drive = "DM542"\nprofile = "cosine"',

@@ -205,6 +205,9 @@ def test_a_bad_line_is_named_and_nothing_moves(
 GOOD_AXIS = '[[axis]]\nname = "X"\nsteps_per_mm = 80\nspeed = 200\nacceleration = 1000\n'
 
 
+SPINDLE = "clock_hz = 64_000_000\nspindle_maximum = 1000\n[spindle]\n"
+
+
 @pytest.mark.parametrize(
     ("text", "told"),
     [
@@ -221,6 +224,11 @@ GOOD_AXIS = '[[axis]]\nname = "X"\nsteps_per_mm = 80\nspeed = 200\nacceleration 
         ("clock_hz = 64_000_000\n[pins]\nstep_high = 1\n" + GOOD_AXIS, "pins: step_high is"),
         ("clock_hz = 64_000_000\n" + GOOD_AXIS + "jerk = -5", "axis 1: jerk"),
         ("clock_hz = ", "Invalid value"),
+        ("clock_hz = 64_000_000\n[spindle]\ncounts = 400\n" + GOOD_AXIS, "spindle: it needs spindle_maximum"),
+        (SPINDLE + GOOD_AXIS, "spindle: counts is missing"),
+        (SPINDLE + "counts = 400\nwander = 95\n" + GOOD_AXIS, "wander at most"),
+        (SPINDLE + "counts = 400\nstart_up = 0\n" + GOOD_AXIS, "start_up must be greater than 0"),
+        (SPINDLE + "count = 400\n" + GOOD_AXIS, "spindle: unknown key 'count'; did you mean counts?"),
     ],
 )
 def test_a_bad_machine_file_is_refused(

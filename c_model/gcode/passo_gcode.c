@@ -5,7 +5,7 @@
 
 #include "passo_gcode_private.h"
 
-const passo_gcode_command PASSO_GCODE_POWER_UP[PASSO_GCODE_MODES] = {
+static const passo_gcode_command POWER_UP[PASSO_GCODE_MODES] = {
     [PASSO_GCODE_MOTION] = 0,
     [PASSO_GCODE_SYSTEM] = 540,
     [PASSO_GCODE_PLANE] = 170,
@@ -23,6 +23,13 @@ const passo_gcode_command PASSO_GCODE_POWER_UP[PASSO_GCODE_MODES] = {
     [PASSO_GCODE_SURFACE] = 970,
 #endif
 };
+
+passo_gcode_command passo_gcode_power_up(const struct passo_gcode *gcode, unsigned group)
+{
+	if (group == PASSO_GCODE_PLANE && !passo_gcode_is_linear(gcode, 1) && passo_gcode_is_linear(gcode, 2))
+		return PASSO_GCODE_G(18, 0);
+	return POWER_UP[group];
+}
 
 void passo_gcode_copy(const struct passo_gcode *gcode, const int64_t *from, int64_t *to)
 {
@@ -68,7 +75,7 @@ void passo_gcode_set_offsets(struct passo_gcode *gcode, const struct passo_gcode
 void passo_gcode_reset(struct passo_gcode *gcode)
 {
 	for (unsigned group = 0; group < PASSO_GCODE_MODES; group++)
-		gcode->mode[group] = PASSO_GCODE_POWER_UP[group];
+		gcode->mode[group] = passo_gcode_power_up(gcode, group);
 	for (unsigned axis = 0; axis < PASSO_GCODE_AXES_MAX; axis++)
 		gcode->shift[axis] = 0;
 	gcode->flood = gcode->mist = false;
@@ -136,7 +143,7 @@ static void accept_command(struct passo_gcode *gcode, const struct passo_gcode_c
 	case PASSO_GCODE_G(10, 0):
 #ifndef PASSO_PLAIN_GCODE
 		if (check->entry > 0) {
-			gcode->offsets.tool_length[check->entry - 1] = (int32_t)check->set[2];
+			gcode->offsets.tool_length[check->entry - 1] = (int32_t)check->set[0];
 			break;
 		}
 #endif

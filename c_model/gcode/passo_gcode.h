@@ -43,6 +43,9 @@ struct passo_gcode_settings {
 	uint8_t left_out;         /* mask of axes of passo_gcode_block.h */
 	uint8_t inputs;           /* of M66: P is below it */
 	bool power;               /* there is the output of M67 and M68, E0 */
+#ifndef PASSO_WITHOUT_THREADS
+	uint32_t turn_counts; /* of the encoder of the spindle; 0: none, no threads */
+#endif
 };
 
 /* Offsets that survive a reset: stored by the caller, if at all. */
@@ -85,7 +88,8 @@ enum passo_gcode_kind {
 	PASSO_GCODE_END,     /* M2, M30: of the program */
 	PASSO_GCODE_OFFSETS, /* struct passo_gcode_offsets has changed */
 	PASSO_GCODE_CHANGE,  /* M6: a pause with spindle and coolant off, until passo_gcode_load() */
-	PASSO_GCODE_INPUT    /* M66: at rest, until input `input` is as `wanted` or the time is over */
+	PASSO_GCODE_INPUT,   /* M66: at rest, until input `input` is as `wanted` or the time is over */
+	PASSO_GCODE_THREAD   /* G33, G33.1: a line in step with the spindle, and back if it is rigid */
 };
 
 struct passo_gcode_action {
@@ -100,6 +104,11 @@ struct passo_gcode_action {
 	uint32_t line; /* N; 0: none */
 	passo_gcode_command probe;
 	uint8_t tool; /* to be loaded */
+#ifndef PASSO_WITHOUT_THREADS
+	uint64_t pitch; /* of a thread: nm along its line per turn */
+	uint64_t speed; /* of the spindle: millionths of rpm; `feed` is that of this speed */
+	bool rigid;     /* the spindle reverses at the target, and the line is made back as well */
+#endif
 };
 
 /* Pending actions of a line. */
@@ -121,6 +130,9 @@ struct passo_gcode_job {
 	passo_gcode_position from; /* where the motion begins */
 	int64_t at;                /* X at the end of the last action */
 	bool per_turn;             /* the feed is that of G95 */
+#endif
+#ifndef PASSO_WITHOUT_THREADS
+	uint64_t pitch; /* of a thread, nm; 0: the motion is none */
 #endif
 	union {
 		struct passo_gcode_arc arc;     /* if it turns */

@@ -57,7 +57,7 @@ static void end_program(struct passo_gcode *gcode)
 
 	gcode->mode[PASSO_GCODE_MOTION] = 10;
 	for (unsigned i = 0; i < sizeof ENDING; i++)
-		gcode->mode[ENDING[i]] = PASSO_GCODE_POWER_UP[ENDING[i]];
+		gcode->mode[ENDING[i]] = passo_gcode_power_up(gcode, ENDING[i]);
 	gcode->flood = gcode->mist = false;
 #ifndef PASSO_PLAIN_GCODE
 	gcode->power = PASSO_GCODE_POWER_OF_SPINDLE;
@@ -119,6 +119,13 @@ static bool next_of_motion(struct passo_gcode *gcode, struct passo_gcode_action 
 		action->stops = action->stops && !job->motion;
 		return true;
 	}
+#ifndef PASSO_WITHOUT_THREADS
+	if (job->pitch > 0) {
+		job->motion = false;
+		passo_gcode_thread(gcode, action);
+		return true;
+	}
+#endif
 	if (job->probe != PASSO_GCODE_NONE) {
 		action->kind = PASSO_GCODE_PROBE;
 		action->probe = job->probe;

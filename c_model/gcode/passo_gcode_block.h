@@ -5,6 +5,7 @@
  *
  * PASSO_PLAIN_GCODE, for the flash of a small controller: no tool change, no tool table, no inputs and
  * outputs of the user, none of a lathe (passo_gcode_lathe.c); their words are refused. No axis is left out.
+ * PASSO_WITHOUT_THREADS: no motion in step with the spindle.
  */
 #ifndef PASSO_GCODE_BLOCK_H
 #define PASSO_GCODE_BLOCK_H
@@ -14,15 +15,19 @@
 
 #include "passo_gcode_error.h"
 
+#if defined PASSO_PLAIN_GCODE && !defined PASSO_WITHOUT_THREADS
+#define PASSO_WITHOUT_THREADS
+#endif
+
 /* Axes are X Y Z A B C, in this order. Those that a machine leaves out are a mask, bit 0 X: of X Y Z only the
- * last ones. */
+ * last ones, or Y. */
 #define PASSO_GCODE_AXES_MAX 6u
 
 #define PASSO_GCODE_MILLION 1000000
 
 /* Modal groups; at most one command of each in a line. Those before COMMAND are kept from line to line. */
 enum passo_gcode_group {
-	PASSO_GCODE_MOTION,       /* G0 G1 G2 G3 G38.2-5 G73 G80-G83 G85 G86 G89 */
+	PASSO_GCODE_MOTION,       /* G0 G1 G2 G3 G33 G33.1 G38.2-5 G73 G80-G83 G85 G86 G89 */
 	PASSO_GCODE_SYSTEM,       /* G54-59 */
 	PASSO_GCODE_PLANE,        /* G17-19 */
 	PASSO_GCODE_UNITS,        /* G20 G21 */

@@ -6,7 +6,7 @@
 
 #define TOOL_MAX 255
 #define LINE_NUMBER_MAX 9999999
-#define TOOL_AXIS 2u                                          /* Z */
+#define TOOL_LETTER 2u                                        /* Z */
 #define NANOMETRE ((UINT64_C(1) << 32) / PASSO_GCODE_MILLION) /* UQ32.32 mm, rounded down */
 
 bool passo_gcode_take(struct passo_gcode_check *check, char letter)
@@ -51,14 +51,39 @@ bool passo_gcode_has_axis(const struct passo_gcode_check *check, unsigned axis)
 	    != 0;
 }
 
-bool passo_gcode_is_linear(const struct passo_gcode *gcode, unsigned axis)
-{
 #ifdef PASSO_PLAIN_GCODE
-	(void)gcode, (void)axis;
+bool passo_gcode_is_linear(const struct passo_gcode *gcode, unsigned letter)
+{
+	(void)gcode, (void)letter;
 	return true;
+}
+
+unsigned passo_gcode_linear(const struct passo_gcode *gcode, unsigned letter)
+{
+	(void)gcode;
+	return letter;
+}
 #else
-	return (gcode->settings.left_out >> axis & 1) == 0;
+bool passo_gcode_is_linear(const struct passo_gcode *gcode, unsigned letter)
+{
+	return (gcode->settings.left_out >> letter & 1) == 0;
+}
+
+unsigned passo_gcode_linear(const struct passo_gcode *gcode, unsigned letter)
+{
+	unsigned axis = 0;
+
+	if (!passo_gcode_is_linear(gcode, letter))
+		return gcode->settings.axes;
+	for (unsigned before = 0; before < letter; before++)
+		axis += passo_gcode_is_linear(gcode, before);
+	return axis;
+}
 #endif
+
+static unsigned tool_axis(const struct passo_gcode *gcode)
+{
+	return passo_gcode_linear(gcode, TOOL_LETTER);
 }
 
 int64_t passo_gcode_axis_value(const struct passo_gcode_check *check, unsigned axis)
@@ -95,6 +120,15 @@ static enum passo_gcode_error check_line_number(struct passo_gcode_check *check)
 	return PASSO_GCODE_OK;
 }
 
+static bool needs_feed(passo_gcode_command motion)
+{
+#ifndef PASSO_WITHOUT_THREADS
+	if (passo_gcode_is_thread(motion))
+		return false;
+#endif
+	return motion != PASSO_GCODE_G(0, 0) && motion != PASSO_GCODE_G(80, 0);
+}
+
 static bool is_per_turn(passo_gcode_command feed_mode)
 {
 	return feed_mode == PASSO_GCODE_G(95, 0);
@@ -107,7 +141,7 @@ static enum passo_gcode_error check_feed(struct passo_gcode_check *check)
 	const bool given = passo_gcode_take(check, 'F');
 
 	if (check->mode[PASSO_GCODE_FEED_MODE] == PASSO_GCODE_G(93, 0)) {
-		if (check->moves && motion != PASSO_GCODE_G(0, 0) && motion != PASSO_GCODE_G(80, 0) && !given)
+		if (check->moves && needs_feed(motion) && !given)
 			return PASSO_GCODE_NO_FEED;
 		check->inverse = given ? value_of(check, 'F') : 0;
 	} else {
@@ -249,7 +283,7 @@ static enum passo_gcode_error check_tool(struct passo_gcode_check *check)
 	if (length == PASSO_GCODE_G(43, 1)) {
 		if (check->axis_words != PASSO_GCODE_WORD('Z'))
 			return PASSO_GCODE_TOOL_AXIS;
-		check->tool_length = passo_gcode_axis_value(check, TOOL_AXIS);
+		check->tool_length = passo_gcode_axis_value(check, tool_axis(check->gcode));
 	}
 	if (error == PASSO_GCODE_OK)
 		error = check_table_length(check);
@@ -260,7 +294,7 @@ static enum passo_gcode_error check_tool(struct passo_gcode_check *check)
 
 static int64_t tool_offset(const struct passo_gcode_check *check, unsigned axis)
 {
-	return axis == TOOL_AXIS && passo_gcode_is_linear(check->gcode, axis) ? check->tool_length : 0;
+	return axis == tool_axis(check->gcode) ? check->tool_length : 0;
 }
 
 int64_t passo_gcode_offset_of(const struct passo_gcode_check *check, unsigned axis)
@@ -280,9 +314,9 @@ static enum passo_gcode_error check_entry(struct passo_gcode_check *check, int64
 	if (check->axis_words != PASSO_GCODE_WORD('Z'))
 		return PASSO_GCODE_TOOL_AXIS;
 	check->entry = (unsigned)tool;
-	check->set[TOOL_AXIS] = passo_gcode_axis_value(check, TOOL_AXIS);
+	check->set[0] = passo_gcode_axis_value(check, tool_axis(check->gcode));
 	check->job->offsets = true;
-	return check->set[TOOL_AXIS] == (int32_t)check->set[TOOL_AXIS] ? PASSO_GCODE_OK : PASSO_GCODE_TARGET;
+	return check->set[0] == (int32_t)check->set[0] ? PASSO_GCODE_OK : PASSO_GCODE_TARGET;
 }
 #endif
 

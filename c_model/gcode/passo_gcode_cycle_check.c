@@ -3,7 +3,7 @@
  */
 #include "passo_gcode_private.h"
 
-#define CYCLE_AXES 3u /* X, Y, Z */
+#define LINEAR_AXES 3u /* X, Y, Z */
 
 bool passo_gcode_is_cycle(passo_gcode_command motion)
 {
@@ -20,14 +20,15 @@ static enum passo_gcode_error keep(struct passo_gcode_check *check, char letter,
 	return kept ? PASSO_GCODE_OK : PASSO_GCODE_NO_VALUE;
 }
 
-static enum passo_gcode_error check_words(struct passo_gcode_check *check, struct passo_gcode_cycle *cycle)
+static enum passo_gcode_error check_words(
+    struct passo_gcode_check *check, char letter, struct passo_gcode_cycle *cycle)
 {
 	const bool kept = check->gcode->mode[PASSO_GCODE_MOTION] == cycle->kind;
 	const bool pecks = cycle->kind == PASSO_GCODE_G(73, 0) || cycle->kind == PASSO_GCODE_G(83, 0);
 	const bool dwells = cycle->kind == PASSO_GCODE_G(82, 0) || cycle->kind == PASSO_GCODE_G(86, 0)
 	                 || cycle->kind == PASSO_GCODE_G(89, 0);
 	struct passo_gcode_drill *drill = &check->drill;
-	enum passo_gcode_error error = keep(check, (char)('X' + cycle->axis), kept, &drill->bottom);
+	enum passo_gcode_error error = keep(check, letter, kept, &drill->bottom);
 
 	if (error == PASSO_GCODE_OK)
 		error = keep(check, 'R', kept, &drill->level);
@@ -110,24 +111,26 @@ static enum passo_gcode_error check_levels(struct passo_gcode_check *check, stru
 
 enum passo_gcode_error passo_gcode_check_cycle(struct passo_gcode_check *check)
 {
+	const struct passo_gcode *gcode = check->gcode;
 	const struct passo_gcode_plane plane = passo_gcode_plane_of(check);
+	const unsigned letter = LINEAR_AXES - plane.first - plane.second;
 	struct passo_gcode_cycle *cycle = &check->job->cycle;
 	enum passo_gcode_error error;
 
 	*cycle = (struct passo_gcode_cycle){
 	    .kind = check->mode[PASSO_GCODE_MOTION],
-	    .axis = (uint8_t)(CYCLE_AXES - plane.first - plane.second),
-	    .plane = plane,
+	    .axis = (uint8_t)passo_gcode_linear(gcode, letter),
+	    .plane = {(uint8_t)passo_gcode_linear(gcode, plane.first),
+		(uint8_t)passo_gcode_linear(gcode, plane.second)},
 	};
-	if (check->gcode->settings.axes < CYCLE_AXES || !passo_gcode_is_linear(check->gcode, CYCLE_AXES - 1u)
-	    || check->mode[PASSO_GCODE_FEED_MODE] == PASSO_GCODE_G(93, 0))
+	if (cycle->axis >= gcode->settings.axes || check->mode[PASSO_GCODE_FEED_MODE] == PASSO_GCODE_G(93, 0))
 		return PASSO_GCODE_UNSUPPORTED;
 	if (check->axis_words == 0)
 		return PASSO_GCODE_NO_AXIS_WORDS;
-	if (check->axis_words & ~passo_gcode_axis_words(0, CYCLE_AXES))
+	if (check->axis_words & ~passo_gcode_axis_words(0, LINEAR_AXES))
 		return PASSO_GCODE_UNUSED;
-	passo_gcode_copy(check->gcode, check->gcode->position, cycle->at);
-	error = check_words(check, cycle);
+	passo_gcode_copy(gcode, gcode->position, cycle->at);
+	error = check_words(check, (char)('X' + letter), cycle);
 	if (error == PASSO_GCODE_OK)
 		error = check_holes(check, cycle);
 	if (error == PASSO_GCODE_OK)

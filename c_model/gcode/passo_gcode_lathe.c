@@ -149,7 +149,7 @@ void passo_gcode_turn(struct passo_gcode *gcode, struct passo_gcode_action *acti
 {
 	struct passo_gcode_job *job = &gcode->job;
 
-	if (action->kind == PASSO_GCODE_DWELL)
+	if (action->kind != PASSO_GCODE_LINE && action->kind != PASSO_GCODE_PROBE)
 		return;
 	if (is_in_pieces(gcode)) {
 		next_piece(gcode, action->target);

@@ -46,10 +46,10 @@ struct passo_gcode_plane passo_gcode_plane_of(const struct passo_gcode_check *ch
 	}
 }
 
-/* I, J or K of an axis. */
-static int64_t offset_along(const struct passo_gcode_check *check, unsigned axis)
+/* I, J or K of X, Y or Z. */
+static int64_t offset_along(const struct passo_gcode_check *check, unsigned letter)
 {
-	const int64_t offset = passo_gcode_length_of(check, (char)('I' + axis));
+	const int64_t offset = passo_gcode_length_of(check, (char)('I' + letter));
 
 	return passo_gcode_in_range(offset) ? offset : PASSO_GCODE_COORDINATE_MAX + 1;
 }
@@ -59,8 +59,8 @@ bool passo_gcode_is_arc(passo_gcode_command motion)
 	return motion == PASSO_GCODE_G(2, 0) || motion == PASSO_GCODE_G(3, 0);
 }
 
-static enum passo_gcode_error find_center(
-    struct passo_gcode_check *check, const struct passo_gcode_arc *arc, struct passo_gcode_vector *offset)
+static enum passo_gcode_error find_center(struct passo_gcode_check *check, struct passo_gcode_plane letters,
+    const struct passo_gcode_arc *arc, struct passo_gcode_vector *offset)
 {
 	const unsigned first = arc->plane.first, second = arc->plane.second;
 	const struct passo_gcode_vector chord = {
@@ -77,25 +77,30 @@ static enum passo_gcode_error find_center(
 			return PASSO_GCODE_RADIUS;
 		return passo_gcode_arc_center(chord, radius, arc->clockwise, offset);
 	}
-	const bool given =
-	    (check->block.words & (PASSO_GCODE_WORD('I' + (int)first) | PASSO_GCODE_WORD('I' + (int)second)))
-	    != 0;
+	const bool given = passo_gcode_has_word(check, (char)('I' + letters.first))
+	                || passo_gcode_has_word(check, (char)('I' + letters.second));
 	passo_gcode_take(check, 'I');
 	passo_gcode_take(check, 'J');
 	passo_gcode_take(check, 'K');
 	if (!given)
 		return PASSO_GCODE_NO_OFFSETS;
-	*offset = (struct passo_gcode_vector){offset_along(check, first), offset_along(check, second)};
+	*offset = (struct passo_gcode_vector){
+	    offset_along(check, letters.first), offset_along(check, letters.second)};
 	return PASSO_GCODE_OK;
 }
 
 static enum passo_gcode_error check_arc(struct passo_gcode_check *check)
 {
+	const struct passo_gcode_plane letters = passo_gcode_plane_of(check);
 	struct passo_gcode_arc *arc = &check->job->arc;
 	struct passo_gcode_vector offset;
 
+	if (!passo_gcode_is_linear(check->gcode, letters.first)
+	    || !passo_gcode_is_linear(check->gcode, letters.second))
+		return PASSO_GCODE_UNSUPPORTED;
 	*arc = (struct passo_gcode_arc){
-	    .plane = passo_gcode_plane_of(check),
+	    .plane = {(uint8_t)passo_gcode_linear(check->gcode, letters.first),
+		(uint8_t)passo_gcode_linear(check->gcode, letters.second)},
 	    .clockwise = check->mode[PASSO_GCODE_MOTION] == PASSO_GCODE_G(2, 0),
 	    .axes = check->gcode->settings.axes,
 	};
@@ -103,10 +108,7 @@ static enum passo_gcode_error check_arc(struct passo_gcode_check *check)
 		arc->start[axis] = check->gcode->position[axis];
 		arc->target[axis] = check->job->destination[axis];
 	}
-	if (!passo_gcode_is_linear(check->gcode, arc->plane.first)
-	    || !passo_gcode_is_linear(check->gcode, arc->plane.second))
-		return PASSO_GCODE_UNSUPPORTED;
-	const enum passo_gcode_error error = find_center(check, arc, &offset);
+	const enum passo_gcode_error error = find_center(check, letters, arc, &offset);
 	if (error != PASSO_GCODE_OK)
 		return error;
 	check->job->turns = true;
@@ -169,6 +171,11 @@ enum passo_gcode_error passo_gcode_check_motion(struct passo_gcode_check *check)
 		return PASSO_GCODE_AXIS_WORDS;
 	if (!check->moves)
 		return PASSO_GCODE_OK;
+#ifndef PASSO_WITHOUT_THREADS
+	job->pitch = 0;
+	if (passo_gcode_is_thread(motion))
+		return passo_gcode_check_thread(check);
+#endif
 	if (motion != 0 && check->feed == 0 && check->inverse == 0)
 		return PASSO_GCODE_NO_FEED;
 #ifndef PASSO_PLAIN_GCODE

@@ -31,7 +31,8 @@ struct passo_gcode_check {
 	passo_gcode_position set; /* by G10, G92 */
 };
 
-extern const passo_gcode_command PASSO_GCODE_POWER_UP[PASSO_GCODE_MODES];
+/* The command of a group that is in force at first: of the planes the one that the machine has. */
+passo_gcode_command passo_gcode_power_up(const struct passo_gcode *gcode, unsigned group);
 
 /* The axes of a position. */
 void passo_gcode_copy(const struct passo_gcode *gcode, const int64_t *from, int64_t *to);
@@ -44,9 +45,10 @@ static inline bool passo_gcode_has_word(const struct passo_gcode_check *check, c
 }
 /* Value of a word in nanometers, with the active units. */
 int64_t passo_gcode_length_of(const struct passo_gcode_check *check, char letter);
-/* Whether an axis of the machine is X, Y or Z, as its place of 0 to 2 says; a place without an axis is free.
- */
-bool passo_gcode_is_linear(const struct passo_gcode *gcode, unsigned axis);
+/* Whether X, Y or Z, 0 to 2, may be in an arc: not if an axis behind it is there without it. */
+bool passo_gcode_is_linear(const struct passo_gcode *gcode, unsigned letter);
+/* Its place among the axes of the machine; without such an axis a free one. */
+unsigned passo_gcode_linear(const struct passo_gcode *gcode, unsigned letter);
 bool passo_gcode_has_axis(const struct passo_gcode_check *check, unsigned axis);
 int64_t passo_gcode_axis_value(const struct passo_gcode_check *check, unsigned axis);
 bool passo_gcode_in_range(int64_t nanometres);
@@ -61,6 +63,7 @@ bool passo_gcode_is_arc(passo_gcode_command motion);
 /* Whether a motion is a drilling cycle, and the checks of its words: fills in the job. */
 bool passo_gcode_is_cycle(passo_gcode_command motion);
 enum passo_gcode_error passo_gcode_check_cycle(struct passo_gcode_check *check);
+/* In X, Y and Z. */
 struct passo_gcode_plane passo_gcode_plane_of(const struct passo_gcode_check *check);
 #ifndef PASSO_PLAIN_GCODE
 /* The words of a lathe: S, D, G95, G96, G97. */
@@ -70,6 +73,12 @@ enum passo_gcode_error passo_gcode_check_turning(const struct passo_gcode_check 
 int64_t passo_gcode_wanted_speed(const struct passo_gcode *gcode, int64_t x);
 /* Output and feed of an action of a motion, and the target of its next piece. */
 void passo_gcode_turn(struct passo_gcode *gcode, struct passo_gcode_action *action);
+#endif
+#ifndef PASSO_WITHOUT_THREADS
+/* Whether a motion is in step with the spindle, the checks of its words, and its action. */
+bool passo_gcode_is_thread(passo_gcode_command motion);
+enum passo_gcode_error passo_gcode_check_thread(struct passo_gcode_check *check);
+void passo_gcode_thread(const struct passo_gcode *gcode, struct passo_gcode_action *action);
 #endif
 /* Millionths of rpm that the spindle has when so much is wanted, and the output word. */
 uint64_t passo_gcode_speed(const struct passo_gcode *gcode, int64_t wanted);

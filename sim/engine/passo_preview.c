@@ -215,6 +215,7 @@ void passo_preview_begin(
     struct passo_preview *preview, const struct passo_gcode *gcode, const int32_t *positions)
 {
 	preview->program.gcode = *gcode;
+	preview->program.machine.rehearses = true;
 	passo_path_restart(&preview->program.path, positions);
 }
 

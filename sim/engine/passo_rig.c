@@ -22,13 +22,13 @@ static void record(
 
 /* One entry for a count, and one where its index changes. */
 static void record_spindle(
-    struct passo_rig *rig, unsigned number, uint64_t clock, const struct passo_inputs *inputs)
+    struct passo_rig *rig, unsigned number, uint64_t clock, int64_t before, const struct passo_inputs *inputs)
 {
-	const uint64_t turn = rig->config.wheel[number].per_turn;
-	const uint64_t count = (uint64_t)rig->wheel[number].count;
+	const int64_t turn = rig->config.wheel[number].per_turn, count = rig->wheel[number].count;
+	const int64_t edge = count > before ? count : before;
 
-	record(rig, clock, (count & 1u) != 0u ? PASSO_INPUT_ENCODER_A : PASSO_INPUT_ENCODER_B, inputs);
-	if (count % turn <= 1u)
+	record(rig, clock, (edge & 1) != 0 ? PASSO_INPUT_ENCODER_A : PASSO_INPUT_ENCODER_B, inputs);
+	if (count % turn == 0 || before % turn == 0)
 		record(rig, clock, PASSO_INPUT_ENCODER_INDEX, inputs);
 }
 
@@ -187,11 +187,16 @@ void passo_rig_follow(
 			(rig->wire[i].active != rig->wire[i].flipped) != fitted->inverted))
 			record(rig, clock, fitted->input, inputs);
 	}
-	for (unsigned i = 0; i < rig->config.wheels; i++)
+	for (unsigned i = 0; i < rig->config.wheels; i++) {
+		const int64_t before = rig->wheel[i].count;
+
 		if (rig->config.wheel[i].interval == 0u)
 			rig_turn(rig, i, clock, inputs);
-		else if (rig_spin(rig, i, clock, inputs))
-			record_spindle(rig, i, clock, inputs);
+		else if (rig->config.wheel[i].start_up != 0u
+			     ? rig_drive(rig, i, clock, outputs->outputs, inputs)
+			     : rig_spin(rig, i, clock, inputs))
+			record_spindle(rig, i, clock, before, inputs);
+	}
 }
 
 bool passo_rig_calls(struct passo_rig *rig)
@@ -205,6 +210,11 @@ bool passo_rig_calls(struct passo_rig *rig)
 void passo_rig_slip(struct passo_rig *rig, uint32_t wheel, int64_t counts)
 {
 	rig->wheel[wheel].slip += counts;
+}
+
+void passo_rig_drive(struct passo_rig *rig, uint32_t wheel, uint32_t speed)
+{
+	rig->wheel[wheel].wanted = speed;
 }
 
 const struct passo_rig_moment *passo_rig_moment(const struct passo_rig *rig, uint32_t event)

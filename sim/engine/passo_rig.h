@@ -47,6 +47,8 @@ struct passo_rig_wheel {
 	uint64_t interval; /* of a spindle: clocks per count at its mean speed, 2^16 */
 	uint32_t wander;   /* by which its speed wanders either way, 2^16 of the mean */
 	uint32_t per_turn; /* counts from index to index */
+	uint64_t
+	    start_up; /* clocks from rest to that speed; not 0: output 0 turns it on, output 1 reverses it */
 };
 
 enum passo_rig_when { PASSO_RIG_TIME, PASSO_RIG_POSITION, PASSO_RIG_RISING, PASSO_RIG_FALLING };
@@ -101,6 +103,8 @@ bool passo_rig_calls(struct passo_rig *rig);
 
 /* A wheel slips now by `counts`, like with an event. */
 void passo_rig_slip(struct passo_rig *rig, uint32_t wheel, int64_t counts);
+/* Mean speed that a spindle with `start_up` is to have when it is on: 2^16 of that of its interval. */
+void passo_rig_drive(struct passo_rig *rig, uint32_t wheel, uint32_t speed);
 const struct passo_rig_moment *passo_rig_moment(const struct passo_rig *rig, uint32_t event);
 int64_t passo_rig_position(const struct passo_rig *rig, uint32_t axis);
 /* Moves up to `capacity` of the oldest changes of inputs to `changes`, of encoders only those of spindles;

@@ -22,7 +22,10 @@ struct wheel {
 	/* of a spindle */
 	uint64_t due;              /* the same, 2^16 */
 	int64_t from, to;          /* speeds between which it changes, 2^16 of the mean */
-	uint32_t length, progress; /* counts of the change, and made */
+	uint32_t length, progress; /* counts of the change, and made; with `start_up`: ticks */
+	/* of a spindle with `start_up`; 2^32 counts, per tick where they are speeds */
+	int64_t angle, speed;
+	uint32_t wanted; /* 2^16 of its greatest speed */
 };
 
 struct passo_rig {
@@ -54,5 +57,10 @@ int64_t rig_counts(const struct passo_rig *rig, unsigned number);
 void rig_turn(struct passo_rig *rig, unsigned number, uint64_t clock, struct passo_inputs *inputs);
 /* The same of a spindle; whether it has. */
 bool rig_spin(struct passo_rig *rig, unsigned number, uint64_t clock, struct passo_inputs *inputs);
+/* The same of a spindle that outputs turn on and reverse. */
+bool rig_drive(
+    struct passo_rig *rig, unsigned number, uint64_t clock, uint64_t outputs, struct passo_inputs *inputs);
+/* The levels of A and B at the count of a wheel. */
+void rig_show(const struct passo_rig *rig, unsigned number, struct passo_inputs *inputs);
 
 #endif

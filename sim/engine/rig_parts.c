@@ -95,7 +95,7 @@ int64_t rig_counts(const struct passo_rig *rig, unsigned number)
 }
 
 /* A leads: 00 10 11 01 */
-static void show(const struct passo_rig *rig, unsigned number, struct passo_inputs *inputs)
+void rig_show(const struct passo_rig *rig, unsigned number, struct passo_inputs *inputs)
 {
 	const uint8_t axis = rig->config.wheel[number].axis;
 	const int64_t count = rig->wheel[number].count;
@@ -113,7 +113,7 @@ void rig_turn(struct passo_rig *rig, unsigned number, uint64_t clock, struct pas
 		return;
 	wheel->count += wanted > wheel->count ? 1 : -1;
 	wheel->next = clock + rig->config.wheel[number].gap;
-	show(rig, number, inputs);
+	rig_show(rig, number, inputs);
 }
 
 /* Clocks to the next count, 2^16: the speed goes from one random value to the next in a part of a turn. */
@@ -144,7 +144,7 @@ bool rig_spin(struct passo_rig *rig, unsigned number, uint64_t clock, struct pas
 	wheel->count++;
 	wheel->due += interval(rig, number);
 	wheel->next = wheel->due >> 16;
-	show(rig, number, inputs);
+	rig_show(rig, number, inputs);
 	rig_set(inputs, PASSO_INPUT_ENCODER_INDEX, fitted->axis, wheel->count % fitted->per_turn == 0);
 	return true;
 }

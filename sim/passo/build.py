@@ -72,7 +72,8 @@ def planner_library() -> Path:
 
 def engine_sources() -> list[Path]:
     """What both engines share: time, the SPI masters, the log of the pins, the machine at the pins."""
-    return [paths.engine / name for name in ("engine.c", "engine_spi.c", "passo_rig.c", "rig_parts.c")]
+    names = ("engine.c", "engine_spi.c", "passo_rig.c", "rig_parts.c", "rig_spindle.c")
+    return [paths.engine / name for name in names]
 
 
 @cache

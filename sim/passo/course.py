@@ -180,7 +180,7 @@ class Course:
         """The same at a feed of each level of Z, the highest first; lines that change Z are of none."""
         if "Z" not in self.machine.letters:
             return []
-        z, feed = self.points[:, 2], ~self.planned.lines["rapid"]
+        z, feed = self.points[:, self.machine.letters.index("Z")], ~self.planned.lines["rapid"]
         level = np.round((z[1:] + z[:-1]) / 2 / LEVEL).astype(int)
         flat = feed & (np.abs(np.diff(z)) < LEVEL)
         numbers, where = np.unique(level, return_inverse=True)

@@ -29,6 +29,7 @@ class GcodeSettings:
     axes: int = 3
     arc_tolerance: float = 0.002  # mm
     spindle_maximum: int = 0  # rpm
+    turn_counts: int = 0  # of the encoder of the spindle; 0: none
     letters: str = ""  # of the axes; none: the first ones of AXIS_LETTERS
     inputs: int = 1 + len(AXIS_LETTERS)  # of M66
     power: bool = True  # there is the output of M67 and M68
@@ -63,6 +64,7 @@ class GcodeSettings:
                 "left_out": self.left_out,
                 "inputs": self.inputs,
                 "power": self.power,
+                "turn_counts": self.turn_counts,
             },
         )
 

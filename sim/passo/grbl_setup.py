@@ -168,7 +168,7 @@ def attach(engine: Any, machine: MachineFile, skews: dict[int, int] | None = Non
         round(float(limits.steps_per_mm) * end.travel)
         for limits, end in zip(machine.settings.axes, machine.ends, strict=True)
     ]
-    _add_encoders(config, machine)
+    add_encoders(config, machine)
     for motor, start in enumerate(rows @ np.array(travels) // 2):
         config.start[motor] = start + (skews or {}).get(motor, 0)
     for axis, (travel, end) in enumerate(zip(travels, machine.ends, strict=True)):
@@ -193,7 +193,8 @@ def attach(engine: Any, machine: MachineFile, skews: dict[int, int] | None = Non
     return engine.attach(config)
 
 
-def _add_encoders(config: Any, machine: MachineFile) -> None:
+def add_encoders(config: Any, machine: MachineFile) -> None:
+    """Make those of the motors the wheels of a `struct passo_rig_config`."""
     for number, (motor, ratio) in enumerate(machine.encoder_ratios.items()):
         config.wheel[number] = {"axis": motor, "ratio": ratio, "gap": gap_of(ENCODER_FILTER)}
     config.wheels = len(machine.encoders)
@@ -204,7 +205,7 @@ def attach_encoders(engine: Any, machine: MachineFile) -> None:
     if machine.encoders:
         config = ffi().new("struct passo_rig_config *")
         config.axes = engine.parameters.channels * engine.parameters.axes
-        _add_encoders(config, machine)
+        add_encoders(config, machine)
         engine.attach(config)
 
 

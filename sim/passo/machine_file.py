@@ -39,11 +39,14 @@ from passo.values import BadValueError, Written, shown
 FILE_KEYS = (
     *("board", "clock_hz", "junction_deviation", "arc_tolerance", "profile", "spindle_maximum", "laser"),
     *("soft_limits", "probe", "drive", "chip", "kinematics", "pins", "switches", "home", "motors", "axis"),
+    "spindle",
 )
 AXIS_KEYS = (
     *("name", "steps_per_mm", "speed", "acceleration", "jerk", "jump", "travel", "home", "switches"),
     *("motors", "offsets", "encoders", "following"),
 )
+COUNTS, WANDER_MAX = range(64, 65536), 90
+SPINDLE_KEYS = ("counts", "start_up", "wander")
 MOTOR_KEYS = ("speed", "acceleration", "jerk")
 KINEMATICS = {"cartesian": (), "corexy": (0, 1), "corexz": (0, 2)}  # the two axes that share two motors
 MOTORS_MOST = 3  # of an axis
@@ -98,6 +101,15 @@ class Switches:
 
 
 @dataclass(frozen=True)
+class Spindle:
+    """The encoder of a spindle, and how `passo run` simulates that spindle."""
+
+    counts: int  # per turn
+    start_up: float = 0.3  # s from rest to full speed
+    wander: float = 0  # % by which its speed wanders either way
+
+
+@dataclass(frozen=True)
 class MachineFile:
     """A machine for G-code."""
 
@@ -113,6 +125,7 @@ class MachineFile:
     drive: str = ""  # a name of drives.toml, or none
     chip: str = CHIPS[0]  # of the firmware
     kinematics: str = "cartesian"
+    spindle: Spindle | None = None
 
     @property
     def letters(self) -> str:
@@ -249,6 +262,7 @@ def _machine(path: Path, data: Table) -> MachineFile:
     tolerance = _number(data, "arc_tolerance", ARC_TOLERANCE)
     if not tolerance:
         raise BadValueError("arc_tolerance must be greater than 0")
+    encoder = within("spindle", lambda: _spindle(data, spindle))
     return MachineFile(
         path,
         settings,
@@ -256,6 +270,7 @@ def _machine(path: Path, data: Table) -> MachineFile:
             len(axes),
             tolerance,
             spindle,
+            encoder.counts if encoder else 0,
             letters,
             inputs=1 + len(motors.map(len(axes))) if "inputs" in parts else 0,
             power="outputs" in parts,
@@ -269,7 +284,24 @@ def _machine(path: Path, data: Table) -> MachineFile:
         data.get("drive", ""),
         read_word(data, "chip", CHIPS) if "chip" in data else CHIPS[0],
         kinematics,
+        encoder,
     )
+
+
+def _spindle(data: Table, maximum: int) -> Spindle | None:
+    if "spindle" not in data:
+        return None
+    table = read_subtable(data, "spindle")
+    check_known(table, SPINDLE_KEYS)
+    if not maximum:
+        raise BadValueError("it needs spindle_maximum")
+    if "board" in data:
+        raise BadValueError("no board has pins for its encoder: write clock_hz instead of board")
+    counts = read_integer(table, "counts", COUNTS.start, COUNTS.stop - 1)
+    start_up, wander = _number(table, "start_up", Spindle.start_up), _number(table, "wander", Spindle.wander)
+    if not start_up or wander > WANDER_MAX:
+        raise BadValueError(f"start_up must be greater than 0, wander at most {WANDER_MAX} %")
+    return Spindle(counts, start_up, wander)
 
 
 def _squares(end: AxisEnds) -> bool:
@@ -342,8 +374,8 @@ def _check_shared(
     ends: Sequence[AxisEnds],
 ) -> None:
     """What contradicts two axes that share two motors."""
-    if AXIS_LETTERS[max(shared)] not in given:
-        raise BadValueError(f'kinematics = "{kinematics}" needs an axis {AXIS_LETTERS[max(shared)]}')
+    if missing := next((letter for letter in AXIS_LETTERS[: max(shared) + 1] if letter not in given), ""):
+        raise BadValueError(f'kinematics = "{kinematics}" needs an axis {missing}')
     one, other = (axes[axis].steps_per_mm for axis in shared)
     letters = " and ".join(AXIS_LETTERS[axis] for axis in shared)
     if one != other:
@@ -544,14 +576,14 @@ def _letters(tables: Sequence[Table]) -> str:
     letters = ""
     for number, table in enumerate(tables, 1):
         left = AXIS_LETTERS[AXIS_LETTERS.index(letters[-1]) + 1 :] if letters else AXIS_LETTERS
-        allowed = left[:1] + left[1:].replace("Y", "").replace("Z", "")
+        allowed = left if letters else left.replace("Y", "").replace("Z", "")
         name = table.get("name", left[:1])
         if not isinstance(name, str) or len(name) != 1 or name not in allowed:
             named = " or ".join(", ".join(f'"{letter}"' for letter in allowed).rsplit(", ", 1))
             raise BadValueError(
                 f"axis {number}: name must be {named or 'left out, C is the last one'}, not {shown(name)}: "
                 "axes are X, Y, Z, A, B, C in order; "
-                "A, B, C may be left out, of X, Y, Z the last ones"
+                "A, B, C may be left out, of X, Y, Z the last ones, or Y"
             )
         letters += name
     return letters

@@ -3,13 +3,14 @@
 
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from passo.build import Parameters
 from passo.driver import Driver, DriverError
 from passo.engine import Engine
 from passo.expand.expander import Options, expand_file, needs_expanding
@@ -25,9 +26,12 @@ from passo.pair_engine import PairEngine
 from passo.path import LOOK_AHEAD
 from passo.preview import Checked, Planned, check_lines, new_gcode, plan_lines, position_of
 from passo.program import Program
+from passo.rig import CHANGE
 from passo.run import parameters_for
+from passo.spindle_at import SpindleAt
 
 LOOPS_PER_SECOND = 1000  # polls of the driver
+FOLLOWS_PER_SECOND = 10_000  # the same in step with the spindle
 SLEWS_PER_SECOND = 20  # of hold and stop, from full speed
 STANDARD_INPUT, STDIN = Path("-"), Path("stdin")
 REFUSED_MOST = 20  # bad lines that are reported
@@ -84,6 +88,8 @@ class Played:
     origin: int  # clock of the start of the first motion
     following: dict[str, float]  # greatest following errors of motors with an encoder, in mm
     canceled: str = ""  # where, if it was
+    threads: int = 0  # passes in step with the spindle
+    counts: np.ndarray = field(default_factory=lambda: np.empty(0, CHANGE))  # of the encoder of the spindle
 
     @cached_property
     def seconds(self) -> float:
@@ -172,8 +178,8 @@ def _read(
         raise BadInputError(f"{path}: {error.strerror}") from None
     name = STDIN if path == STANDARD_INPUT else path
     text = lines(data)
-    if surface and "Z" not in machine.letters:
-        raise BadInputError(f"{name}: the machine has no axis Z that could probe a surface")
+    if surface and (missing := next((axis for axis in "XYZ" if axis not in machine.letters), "")):
+        raise BadInputError(f"{name}: the machine has no axis {missing} to probe a surface")
     if surface or needs_expanding(data):
         options = Options(machine.gcode, tools, at_zero=True, surface=surface)
         expanded = expand_file(name, options, _say, data)
@@ -222,6 +228,13 @@ def _say(text: str) -> None:
     print(text, file=sys.stderr)
 
 
+def core_of(machine: MachineFile) -> Parameters:
+    """The core that plays parts; the encoder of a spindle is at the inputs behind the motors."""
+    if machine.spindle is None:
+        return replace(parameters_for(len(machine.motors)), encoders=int(bool(machine.encoders)))
+    return replace(parameters_for(len(machine.motors) + 1), encoders=1, outputs=1)
+
+
 def plan_part(
     part: Part,
     machine: MachineFile,
@@ -229,7 +242,7 @@ def plan_part(
     progress: Callable[[int], None] = lambda lines: None,
 ) -> Planned:
     """Plan all lines, as play_part() does; `progress` is called with the lines taken."""
-    core = parameters_for(len(machine.motors))
+    core = core_of(machine)
     begin, polls = part.begin, LOOPS_PER_SECOND
     return plan_lines(part.lines, machine, begin.gcode, begin.steps, core, look_ahead, polls, progress)
 
@@ -259,19 +272,27 @@ def play_part(
     configure(driver, machine)
     program = Program(driver, machine.settings, machine.gcode, look_ahead)
     program.begin(part.begin.gcode, part.begin.steps)
+    spindle = SpindleAt(engine, machine) if machine.spindle else None
+    if spindle:
+        program.c.machine.spindle = motors
     loop = HostLoop(engine, machine.clock_hz // LOOPS_PER_SECOND)
-    waiting, taken = iter(part.lines), 0
+    waiting, taken, begun = iter(part.lines), 0, 0  # begun: of the thread that lines continue
     last, quiet = -1, engine.clock
     canceled = ""
     try:
         while not program.is_done:
             while program.is_ready:
                 if (line := next(waiting, None)) is not None:
+                    begun = begun if program.follows else taken
                     program.line(line)
                     taken += 1
                 else:
                     program.end()
                 program.poll()
+            if spindle:
+                spindle.drive(program.power)
+                polls = FOLLOWS_PER_SECOND if program.follows else LOOPS_PER_SECOND
+                loop.period = machine.clock_hz // polls
             loop.turn(program.poll, lambda: program.rests)
             if program.chords != last:
                 last, quiet = program.chords, engine.clock
@@ -279,7 +300,7 @@ def play_part(
             if engine.clock - quiet > PATIENCE * machine.clock_hz:
                 raise BadInputError(f"{part.path}: timeout: no motion for an hour of simulated time")
     except (GcodeError, DriverError) as error:
-        raise BadInputError(f"{part.places[taken - 1]}: {error}") from None
+        raise BadInputError(f"{part.places[begun if program.follows else taken - 1]}: {error}") from None
     except KeyboardInterrupt:
         canceled = str(part.places[taken - 1])
     loop.run(8 * sum(vars(machine.pins).values()))
@@ -292,6 +313,7 @@ def play_part(
     return Played(
         *(part, machine, steps.clocks, steps.positions, motions, end, drained, cause, matched),
         *(steps.events, steps.origin, _following(driver, machine), canceled),
+        *([program.threads, spindle.changes()] if spindle else []),
     )
 
 

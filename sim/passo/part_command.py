@@ -20,12 +20,12 @@ from passo.gcode import NANOMETERS
 from passo.grbl_setup import attach_encoders
 from passo.machine_file import MachineFile, read_machine
 from passo.output import empty_folder, write_json
-from passo.part import Lines, Part, Played, plan_part, play_part, read_part
+from passo.part import Lines, Part, Played, core_of, plan_part, play_part, read_part
 from passo.part_judge import greatest, shares_of
 from passo.part_page import write_part_page
 from passo.path import LOOK_AHEAD
 from passo.report import write_rows
-from passo.run import open_engine, parameters_for
+from passo.run import open_engine
 from passo.toolchain import paths
 from passo.waves import FILES, Window, check_window, recorded, say_waves, wanted_window, write_view
 
@@ -69,7 +69,7 @@ def run_part(files: Sequence[Path], asked: Asked) -> bool:
     elif not found:
         print(f"{part.path.name}: {len(part.lines)} lines, {part.chords} chords in {played.seconds:.6g} s")
         limits = ", ".join(_limit(machine, share) for share in greatest(judged).values())
-        print(f"greatest share of a limit: {limits}")
+        print(f"greatest share of a limit: {limits}" if judged else f"{played.threads} threads")
     print(f"results: {', '.join(str(out / name) for name in (PULSES, SUMMARY) if (out / name).exists())}")
     if window:
         say_waves(out)
@@ -113,14 +113,14 @@ def play_to(
     course = Course(plan_part(part, machine, asked.look_ahead), part.begin.place)
     if window:
         check_window(window, machine.clock_hz, round(course.seconds * machine.clock_hz))
-    core_of = replace(parameters_for(len(machine.motors)), encoders=int(bool(machine.encoders)))
-    with open_engine(engine, core_of, machine.clock_hz, window is not None) as core:
+    parameters = core_of(machine)
+    with open_engine(engine, parameters, machine.clock_hz, window is not None) as core:
         empty_folder(out, (SUMMARY, PICTURE, PULSES, PAGE, *FILES))
         with recorded(core, window, out) if window else nullcontext():
             attach_encoders(core, machine)
             played = play_part(part, machine, core, report, asked.look_ahead)
     if window:
-        write_view(out, core_of, machine.clock_hz, {0: len(machine.motors)}, played.origin)
+        write_view(out, parameters, machine.clock_hz, {0: len(machine.motors)}, played.origin)
     judged = [] if played.canceled else shares_of(played)  # it does not come to rest
     summary = _summary(part, machine, played, engine, judged, played.problems() + faults(judged))
     summary |= {"tools": course.tools(), "levels": course.levels()}

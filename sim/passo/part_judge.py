@@ -26,7 +26,9 @@ def path_of(part: Part, machine: MachineFile) -> list[Line]:
 
 
 def shares_of(played: Played) -> list[Share]:
-    """The greatest share of each limit of each axis."""
+    """The greatest share of each limit of each axis; none of a part with threads, which the spindle moves."""
+    if played.threads:
+        return []
     settings = played.machine.settings
     lines = path_of(played.part, played.machine)
     marks = Marks.of(lines, settings, played.clocks, played.positions) if lines else None

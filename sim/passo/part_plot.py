@@ -108,9 +108,10 @@ def _plot(motion: Motion, title: str, path: Path) -> None:
 
 
 def _draw_path(figure: plt.Figure, ax: plt.Axes, motion: Motion) -> None:
-    """The first two axes, colored by the speed."""
+    """The first two axes, or those of a lathe, colored by the speed."""
     plane = len(motion.path) > 1
-    x, y = (motion.path[0], motion.path[1]) if plane else (motion.times, motion.places[0])
+    across, up = (1, 0) if motion.machine.letters == "XZ" else (0, 1)
+    x, y = (motion.path[across], motion.path[up]) if plane else (motion.times, motion.places[0])
     points = np.stack([x, y], axis=1)
     lines = LineCollection(
         np.stack([points[:-1], points[1:]], axis=1),
@@ -124,5 +125,6 @@ def _draw_path(figure: plt.Figure, ax: plt.Axes, motion: Motion) -> None:
     ax.autoscale()
     if plane:
         ax.set_aspect("equal", adjustable="datalim")
-    ax.set(title="Tool path", xlabel="X, mm" if plane else "s", ylabel="Y, mm" if plane else "X, mm")
+    letters = [f"{motion.machine.letters[axis]}, mm" for axis in (across, up)] if plane else ["s", "X, mm"]
+    ax.set(title="Tool path", xlabel=letters[0], ylabel=letters[1])
     figure.colorbar(lines, ax=ax, label="mm/s", shrink=0.8)

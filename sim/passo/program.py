@@ -46,6 +46,21 @@ class Program:
         """Lines and chords taken so far."""
         return self.c.player.chords
 
+    @property
+    def follows(self) -> bool:
+        """Whether a motion is in step with the spindle."""
+        return self.c.player.thread.step != self._c.PASSO_PLAYER_FREE
+
+    @property
+    def threads(self) -> int:
+        """Passes in step with the spindle so far."""
+        return self.c.player.threads
+
+    @property
+    def power(self) -> int:
+        """Of the spindle, as commanded: up to 65535."""
+        return self._c.passo_gcode_output(ffi().addressof(self.c, "gcode")) & 0xFFFF
+
     def line(self, line: bytes) -> None:
         """Execute a line, when ready; raises GcodeError."""
         if number := self._c.passo_program_line(self.c, line, len(line)):
@@ -62,7 +77,7 @@ class Program:
     @property
     def rests(self) -> bool:
         """Whether polls would only read the state until that has changed."""
-        return self._c.passo_program_rests(self.c)
+        return not self.follows and self._c.passo_program_rests(self.c)
 
     def _check(self, call: str, error: int) -> None:
         self.driver.hardware.check()

@@ -27,6 +27,7 @@ GRBL = (
     "passo_player_input.c",
     "passo_player_line.c",
     "passo_player_probe.c",
+    "passo_player_thread.c",
     "passo_program.c",
 )
 OWN = (

@@ -93,6 +93,14 @@ void passo_driver_tables_fresh(struct passo_host *host);
 /* Queues a checked plan; does not change the clock source of motions. */
 enum passo_error passo_driver_queue(
     struct passo *passo, const struct passo_plan *plan, const struct passo_user_shape *shape);
+/* Queues another line of the same motion, with the output of passo_set_output(). */
+enum passo_error passo_driver_queue_line(struct passo *passo, const struct passo_plan *plan);
+/* Whether the pins of all axes are fast enough for the line of a plan. */
+bool passo_driver_pins_suffice(const struct passo *passo, const struct passo_plan *plan);
+/* At rest: the next motion has the counts of an encoder as its clock, up to `top_speed` (UQ32.32 counts/s).
+ * Converts plan->velocity_peak from substeps per enabled clock to substeps per clock. Error: FOLLOW_SPEED. */
+enum passo_error passo_driver_follow(struct passo *passo, const struct passo_channel_follow *follow,
+    uint64_t top_speed, struct passo_plan *plan);
 /* Selects the core's clock for motions, if an encoder may be selected. Errors: those of a motion at rest. */
 enum passo_error passo_driver_unfollow(struct passo *passo);
 /* ARGUMENT, NOT_OPEN, or NO_OUTPUTS of a core without. */

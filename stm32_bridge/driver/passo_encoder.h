@@ -84,6 +84,35 @@ struct passo_thread {
  * rest. */
 enum passo_error passo_thread(struct passo *passo, const struct passo_thread *thread);
 
+/* A pass of several lines in step with a spindle that runs in and out, and is half a count ahead of the last
+ * count seen: each step is within half a count of the angle at which it belongs. */
+struct passo_pass_line {
+	int32_t steps[PASSO_AXES_MAX];
+	uint32_t half_counts; /* in which they are made: not 0 */
+};
+
+#define PASSO_PASS_LINES_MAX 4u /* they fit into the queue of any core */
+
+struct passo_pass {
+	uint8_t encoder;
+	bool wait_index;
+	uint8_t lines; /* 1 .. PASSO_PASS_LINES_MAX */
+	struct passo_pass_line line[PASSO_PASS_LINES_MAX];
+	const struct passo_output *then; /* output of all lines but the first one; NULL: as that */
+	uint32_t
+	    run_in; /* counts in which it comes up to speed; it catches up in as many. 0: it has the speed */
+	uint32_t run_out; /* counts in which it comes to rest; they end half as many later. 0: none */
+	uint32_t behind;  /* half counts that it is late where it begins; catches up in four times as many */
+	uint64_t top_speed; /* UQ32.32 counts/s: see struct passo_thread */
+};
+
+/* Speed of the pass over that of the thread while it catches up, at most. */
+#define PASSO_PASS_PEAK_TENTHS 16u
+
+/* Queues it, from rest, like passo_thread(). Two frames and one for each line. Errors: those of
+ * passo_thread(); RAMP_TOO_LONG of the planner if it is too short for run_in and run_out. */
+enum passo_error passo_pass(struct passo *passo, const struct passo_pass *pass);
+
 /* State of the running thread; `behind` and `lost` also of the last one. */
 struct passo_thread_state {
 	int32_t owed;    /* counts times 2^scale that the path lags; negative: the path is ahead */

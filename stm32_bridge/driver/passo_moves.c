@@ -10,7 +10,7 @@
 #define MOVES_PER_S_ABSURD 10000u
 
 /* Rejects plans that exceed the pin timing of an axis. */
-static bool pins_suffice(const struct passo *passo, const struct passo_plan *plan)
+bool passo_driver_pins_suffice(const struct passo *passo, const struct passo_plan *plan)
 {
 	const struct passo_u128 path =
 	    passo_u128_shift_left((struct passo_u128){0, plan->line.substeps}, VELOCITY_BITS);
@@ -65,7 +65,7 @@ enum passo_error passo_driver_queue(
 
 	if (error != PASSO_OK)
 		return error;
-	if (!pins_suffice(passo, plan))
+	if (!passo_driver_pins_suffice(passo, plan))
 		return PASSO_ERROR_PINS_TOO_SLOW;
 	error = passo_driver_ready(passo, plan->line.endless);
 	if (error == PASSO_OK && !passo_driver_pins_known(passo, &plan->line))
@@ -87,6 +87,18 @@ enum passo_error passo_driver_queue(
 	passo->velocity_peak = plan->velocity_peak;
 	passo_driver_expect(passo, &plan->line);
 	return PASSO_OK;
+}
+
+enum passo_error passo_driver_queue_line(struct passo *passo, const struct passo_plan *plan)
+{
+	struct passo_line line = plan->line;
+	enum passo_error error = passo_driver_output(passo, plan, &line.output);
+
+	if (error == PASSO_OK)
+		error = push_line(passo, &line);
+	if (error == PASSO_OK)
+		passo_driver_expect(passo, &plan->line);
+	return error;
 }
 
 enum passo_error passo_move_plan(

@@ -77,6 +77,25 @@ static enum passo_error plan_thread(
 	return PASSO_OK;
 }
 
+enum passo_error passo_driver_follow(struct passo *passo, const struct passo_channel_follow *follow,
+    uint64_t top_speed, struct passo_plan *plan)
+{
+	const uint64_t limit =
+	    passo_mul_div_ceil(top_speed, UINT64_C(1) << follow->scale, passo->machine.clock_hz);
+	const uint32_t words[] = {passo_pack_channel_follow(follow), (uint32_t)limit};
+
+	if (limit == 0u || limit > LIMIT_MAX)
+		return PASSO_ERROR_FOLLOW_SPEED;
+	plan->velocity_peak = passo_mul_div_ceil(plan->velocity_peak, limit, UINT64_C(1) << 32);
+	const enum passo_error error = passo_driver_ready(passo, true);
+	if (error != PASSO_OK)
+		return error;
+	passo->follows = true;
+	passo->spindle = follow->source;
+	return passo_driver_moving(
+	    passo_driver_write(passo, PASSO_CHANNEL_FOLLOW, words, sizeof words / sizeof words[0]));
+}
+
 enum passo_error passo_thread(struct passo *passo, const struct passo_thread *thread)
 {
 	struct passo_plan plan = {.ramp_count = 0};
@@ -93,21 +112,10 @@ enum passo_error passo_thread(struct passo *passo, const struct passo_thread *th
 		error = plan_thread(passo, thread, &plan, &scale);
 	if (error != PASSO_OK)
 		return error;
-	const uint64_t limit =
-	    passo_mul_div_ceil(thread->top_speed, UINT64_C(1) << scale, passo->machine.clock_hz);
-	if (limit == 0u || limit > LIMIT_MAX)
-		return PASSO_ERROR_FOLLOW_SPEED;
-	plan.velocity_peak = passo_mul_div_ceil(plan.ramps[0].velocity_end, limit, UINT64_C(1) << 32);
-	error = passo_driver_ready(passo, true);
-	if (error != PASSO_OK)
-		return error;
 	const struct passo_channel_follow follow = {
 	    .follow = true, .wait_index = thread->wait_index, .source = thread->encoder, .scale = scale};
-	const uint32_t words[] = {passo_pack_channel_follow(&follow), (uint32_t)limit};
-	passo->follows = true;
-	passo->spindle = thread->encoder;
-	error = passo_driver_moving(
-	    passo_driver_write(passo, PASSO_CHANNEL_FOLLOW, words, sizeof words / sizeof words[0]));
+	plan.velocity_peak = plan.ramps[0].velocity_end;
+	error = passo_driver_follow(passo, &follow, thread->top_speed, &plan);
 	if (error == PASSO_OK)
 		error = passo_driver_queue(passo, &plan, NULL);
 	if (error == PASSO_OK && thread->endless)

@@ -23,6 +23,7 @@ void passo_player_open(struct passo_player *player, struct passo_gcode *gcode, s
 bool passo_player_has_taken(const struct passo_player *player)
 {
 	return !player->waits && !player->probes
+	    && (!passo_player_follows(player) || passo_player_collects(player))
 	    && !(PASSO_GCODE_HAS_TOOLS && (player->spins || player->restores))
 	    && !passo_gcode_is_busy(player->gcode);
 }
@@ -34,7 +35,8 @@ bool passo_player_is_ready(const struct passo_player *player)
 
 bool passo_player_is_idle(const struct passo_player *player)
 {
-	return passo_player_is_ready(player) && !passo_path_feed_is_moving(player->feed);
+	return passo_player_is_ready(player) && !passo_player_follows(player)
+	    && !passo_path_feed_is_moving(player->feed);
 }
 
 void passo_player_go_on(struct passo_player *player)
@@ -116,6 +118,29 @@ static bool still_spins(struct passo_player *player)
 		player->spins_at = now;
 	player->spins = player->spins && now - player->spins_at < player->machine->spin_up;
 	return player->spins;
+}
+
+bool passo_player_follows(const struct passo_player *player)
+{
+#ifdef PASSO_WITHOUT_THREADS
+	(void)player;
+	return false;
+#else
+	return player->thread.step != PASSO_PLAYER_FREE;
+#endif
+}
+
+bool passo_player_collects(const struct passo_player *player)
+{
+#ifdef PASSO_WITHOUT_THREADS
+	(void)player;
+	return false;
+#else
+	const struct passo_player_thread *thread = &player->thread;
+
+	return (thread->step == PASSO_PLAYER_SET || thread->step == PASSO_PLAYER_SPIN) && !thread->rigid
+	    && thread->pass.lines < PASSO_PASS_LINES_MAX;
+#endif
 }
 
 int64_t passo_player_length(int64_t steps, uint64_t scale)
@@ -205,6 +230,9 @@ enum passo_error passo_player_restart(struct passo_player *player)
 	passo_path_feed_open(player->feed, player->feed->passo, player->feed->path);
 	passo_gcode_set_position(player->gcode, position);
 	player->waits = player->probes = player->paused = player->dwells = false;
+#ifndef PASSO_WITHOUT_THREADS
+	player->thread.step = PASSO_PLAYER_FREE;
+#endif
 	player->levels |= PASSO_PLAYER_UNSURE;
 	if (PASSO_GCODE_HAS_TOOLS)
 		player->restores = player->spins = player->listened = false;
@@ -237,6 +265,10 @@ static enum passo_error take_at_rest(struct passo_player *player, enum passo_pla
 	switch (player->action.kind) {
 	case PASSO_GCODE_PROBE:
 		return passo_player_begin_probe(player, event);
+#ifndef PASSO_WITHOUT_THREADS
+	case PASSO_GCODE_THREAD:
+		return passo_player_begin_thread(player);
+#endif
 	case PASSO_GCODE_DWELL:
 		passo_player_dwell(player);
 		break;
@@ -264,6 +296,16 @@ static enum passo_error take_at_rest(struct passo_player *player, enum passo_pla
 	return PASSO_OK;
 }
 
+static bool is_thread(enum passo_gcode_kind kind)
+{
+#ifdef PASSO_WITHOUT_THREADS
+	(void)kind;
+	return false;
+#else
+	return kind == PASSO_GCODE_THREAD;
+#endif
+}
+
 /* Of a line that is checked only: the same targets, and nothing moves. */
 static void check_action(struct passo_player *player, enum passo_player_event *event)
 {
@@ -273,12 +315,29 @@ static void check_action(struct passo_player *player, enum passo_player_event *e
 		*event = PASSO_PLAYER_ENDED;
 	} else if (PASSO_GCODE_HAS_TOOLS && kind == PASSO_GCODE_CHANGE) {
 		passo_gcode_load(player->gcode, player->action.tool);
-	} else if ((kind == PASSO_GCODE_LINE || kind == PASSO_GCODE_PROBE)
+	} else if ((kind == PASSO_GCODE_LINE || kind == PASSO_GCODE_PROBE || is_thread(kind))
 	           && !passo_player_allows(player, player->action.target)) {
 		*event = PASSO_PLAYER_TRAVEL;
 		passo_player_drop(player);
 	}
 }
+
+#ifndef PASSO_WITHOUT_THREADS
+/* A thread as lines between two rests; a rigid one as two of them. */
+static enum passo_error rehearse(struct passo_player *player, enum passo_player_event *event)
+{
+	passo_path_dwell(player->feed->path, 0);
+	player->action.stops = true;
+	const enum passo_error error = take_line(player, event);
+	if (error != PASSO_OK || player->waits || !player->action.rigid)
+		return error;
+	for (unsigned axis = 0; axis < PASSO_GCODE_AXES_MAX; axis++)
+		player->action.target[axis] = player->gcode->position[axis];
+	player->action.rigid = false;
+	player->waits = *event == PASSO_PLAYER_NOTHING;
+	return PASSO_OK;
+}
+#endif
 
 static enum passo_error take_action(struct passo_player *player, enum passo_player_event *event)
 {
@@ -298,6 +357,10 @@ static enum passo_error take_action(struct passo_player *player, enum passo_play
 		passo_path_dwell(path, passo_mul_div_ceil(player->action.microseconds, path->machine.clock_hz,
 					   MICROSECONDS_PER_SECOND));
 		break;
+	case PASSO_GCODE_THREAD:
+#ifndef PASSO_WITHOUT_THREADS
+		return player->machine->rehearses ? rehearse(player, event) : take_at_rest(player, event);
+#endif
 	case PASSO_GCODE_PROBE:
 	case PASSO_GCODE_PAUSE:
 	case PASSO_GCODE_CHANGE:
@@ -336,6 +399,14 @@ static enum passo_error take_actions(struct passo_player *player, enum passo_pla
 	       && passo_driver_now(passo) - began <= ACTIONS_MICROSECONDS) {
 		if (!player->waits && !passo_gcode_next(player->gcode, &player->action))
 			break;
+#ifndef PASSO_WITHOUT_THREADS
+		if (passo_player_follows(player)) {
+			player->waits = !passo_player_continues(player);
+			if (player->waits)
+				break;
+			continue;
+		}
+#endif
 		error = take_action(player, event);
 		if (player->waits)
 			break;
@@ -361,6 +432,10 @@ enum passo_error passo_player_poll(struct passo_player *player, enum passo_playe
 	if (error != PASSO_OK || *event != PASSO_PLAYER_NOTHING)
 		return error;
 	error = passo_path_feed_poll(player->feed);
+#ifndef PASSO_WITHOUT_THREADS
+	if (error == PASSO_OK && passo_player_follows(player))
+		error = passo_player_follow(player);
+#endif
 	if (probed && error == PASSO_ERROR_SWITCH_MISSED) {
 		*event = PASSO_PLAYER_UNTOUCHED;
 		player->probes = player->touched = false;

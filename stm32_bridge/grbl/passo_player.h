@@ -17,6 +17,7 @@
 #ifndef PASSO_PLAYER_H
 #define PASSO_PLAYER_H
 
+#include "passo_encoder.h"
 #include "passo_gcode.h"
 #include "passo_home.h"
 #include "passo_path_feed.h"
@@ -42,6 +43,11 @@ struct passo_player_machine {
 	passo_gcode_position low, high;
 	uint32_t spin_up;       /* us that a motion waits for the spindle; 0: none */
 	const uint16_t *inputs; /* levels that M66 reads, P0 is bit 0; NULL: those of the core */
+#ifndef PASSO_WITHOUT_THREADS
+	uint8_t
+	    spindle;    /* motor whose encoder inputs the spindle has; see passo_gcode_settings.turn_counts */
+	bool rehearses; /* no spindle: threads are lines at the feed of its speed */
+#endif
 };
 
 /* Number of recent lines of the path whose numbers are kept. */
@@ -61,6 +67,35 @@ struct passo_player_line {
 	uint32_t number; /* N; 0: none */
 	uint32_t output;
 };
+
+#ifndef PASSO_WITHOUT_THREADS
+enum passo_player_step {
+	PASSO_PLAYER_FREE,
+	PASSO_PLAYER_SET,  /* the encoder is to be configured */
+	PASSO_PLAYER_SPIN, /* the spindle comes up to speed; lines that continue the thread are taken */
+	PASSO_PLAYER_PASS,
+	PASSO_PLAYER_PAST, /* behind the target of a rigid one, the spindle reverses */
+	PASSO_PLAYER_STOP, /* counts came back */
+	PASSO_PLAYER_TURN, /* to where the line is at the present count, by the clock */
+	PASSO_PLAYER_BACK
+};
+
+/* A pass in step with the spindle. */
+struct passo_player_thread {
+	enum passo_player_step step;
+	bool rigid;
+	uint32_t output;    /* word of its lines */
+	uint64_t speed;     /* counts/s that the program asks for, UQ32.32; this and the following too */
+	uint64_t top_speed; /* that the axes can follow */
+	uint32_t run;       /* counts in which they come to rest */
+	int32_t from[PASSO_AXES_MAX]; /* where it begins, in steps of the motors */
+	passo_gcode_position end;     /* of the last line */
+	struct passo_pass pass;
+	struct passo_encoder_reading reading;
+	int32_t began; /* count at which a rigid one began */
+	int32_t left;  /* counts from there to where it turned */
+};
+#endif
 
 /* Members up to `held` may be set by the caller; those of the probe may be read. All others are private.
  */
@@ -94,6 +129,10 @@ struct passo_player {
 	uint64_t probe_scale; /* steps of the dominant axis per mm, UQ32.32 */
 	bool touched;
 	passo_gcode_position touch; /* machine coordinates */
+#ifndef PASSO_WITHOUT_THREADS
+	struct passo_player_thread thread;
+	uint32_t threads; /* made since passo_player_open() */
+#endif
 };
 
 void passo_player_open(struct passo_player *player, struct passo_gcode *gcode, struct passo_path_feed *feed,

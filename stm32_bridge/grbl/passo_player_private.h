@@ -16,6 +16,17 @@ enum passo_error passo_player_listen(struct passo_player *player, enum passo_pla
 enum passo_error passo_player_begin_probe(struct passo_player *player, enum passo_player_event *event);
 /* The motion has ended. */
 enum passo_error passo_player_end_probe(struct passo_player *player, enum passo_player_event *event);
+#ifndef PASSO_WITHOUT_THREADS
+/* At rest: the action is a thread. */
+enum passo_error passo_player_begin_thread(struct passo_player *player);
+/* Whether the action continues the thread that waits for its spindle; then it is part of that pass. */
+bool passo_player_continues(struct passo_player *player);
+/* Its part of a poll. Errors: those of passo_pass(); FOLLOW_SPEED if an axis cannot follow the spindle. */
+enum passo_error passo_player_follow(struct passo_player *player);
+#endif
+/* Whether a motion is in step with the spindle, and whether another line could continue it. */
+bool passo_player_follows(const struct passo_player *player);
+bool passo_player_collects(const struct passo_player *player);
 /* Keeps what the line of G-code says of a line of the path. */
 void passo_player_note(struct passo_player *player, uint32_t index);
 

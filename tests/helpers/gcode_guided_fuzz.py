@@ -50,7 +50,7 @@ def _words() -> str:
         for letter, table in (("G", g), ("M", m))
         for tenths in re.findall(r"\{(\d+), PASSO_GCODE_", table)
     ]
-    return "\n".join(f'"{word}"' for word in [*commands, *"XYZABCEFHIJKLNPQRST", "$J=", "(MSG,", "\\x0a"])
+    return "\n".join(f'"{word}"' for word in [*commands, *"XYZABCDEFHIJKLNPQRST", "$J=", "(MSG,", "\\x0a"])
 
 
 def fuzz(seconds: int, kept: Path) -> subprocess.CompletedProcess[str]:

@@ -37,7 +37,9 @@ LIMIT = 2_000_000  # lines executed in loops and subroutines
 SUFFIX = ".ngc"
 FILE_NAME = re.compile(r"[\w.+-]+")
 PLAIN = re.compile(r"/?(?:[a-z][-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))*")
-NEEDS = re.compile(r"[#\[]|[-+][-+]|g0*4[12](?![0-9])|m0*9[89](?![0-9])")  # in a line of block.split()
+NEEDS = re.compile(  # in a line of block.split()
+    r"[#\[]|[-+][-+]|g0*4[12](?![0-9])|g0*(?:7[46]|84)(?![0-9.])|m0*9[89](?![0-9])"
+)
 CALL, BACK = 98, 99
 
 
@@ -45,7 +47,7 @@ CALL, BACK = 98, 99
 class Options:
     """How to expand."""
 
-    gcode: GcodeSettings = field(default_factory=lambda: GcodeSettings(axes=6))
+    gcode: GcodeSettings = field(default_factory=lambda: GcodeSettings(axes=6, turn_counts=1))
     tools: dict[int, Tool] = field(default_factory=dict)
     at_zero: bool = False  # the machine is known: at 0, without offsets
     surface: HeightMap | None = None  # in machine coordinates, that probes touch; needs at_zero

@@ -27,8 +27,8 @@ MACHINE_COORDINATES = {280, 300, 530}
 
 def follow(lines: Sequence[PlainLine], height_map: HeightMap, options: Options) -> list[PlainLine]:
     """Plain lines on a map; raises BadInputError."""
-    if "Z" not in options.gcode.axis_letters:
-        raise BadInputError("the machine has no axis Z that could follow a height map")
+    if missing := next((axis for axis in "XYZ" if axis not in options.gcode.axis_letters), ""):
+        raise BadInputError(f"the machine has no axis {missing} to follow a height map")
     follower = _Follower(height_map, options)
     for line in lines:
         try:

@@ -110,8 +110,9 @@ class Machine:
 
     @property
     def plane(self) -> tuple[int, int]:
-        """First and second axis of the plane in force."""
-        return PLANES[self.mode(PLANE)]
+        """First and second axis of the plane in force; one that there is not is behind the others."""
+        first, second = PLANES[self.mode(PLANE)]
+        return self._axis(first), self._axis(second)
 
     @property
     def work(self) -> tuple[float, ...]:
@@ -322,7 +323,7 @@ class Machine:
             for axis in range(self.axes):
                 self._position[axis] &= old[axis] and self._systems[system][axis]
         if codes & {431, 430, 432, 490} and "Z" in self.letters:
-            self._position[2] &= knew_length
+            self._position[self.letters.index("Z")] &= knew_length
         if 100 in codes:
             self._learn_offsets(values, given, system)
         elif 920 in codes:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from passo.expand.block import Word
 from passo.expand.compensation import Compensation, Step
 from passo.expand.height_map import HeightMap
-from passo.expand.lathe import Said, plain
+from passo.expand.lathe import Lathe, Said
 from passo.expand.machine import CYCLES, FEED_MODE, LINES_AND_ARCS, MOTION, PLANE, SYSTEM, Machine, Motion
 from passo.expand.place import ExpandError, LineError, Place
 from passo.expand.refusals import explain
@@ -39,6 +39,7 @@ class Output:
 
     def __init__(self, machine: Machine, surface: HeightMap | None = None):
         self.machine, self.surface = machine, surface
+        self._lathe = Lathe(machine)
         self.lines: list[PlainLine] = []
         self._compensation: Compensation | None = None
         self._leaving = False  # the first motion after G40 is due
@@ -48,8 +49,11 @@ class Output:
 
     def take(self, text: str, words: Sequence[Word], comments: Sequence[str], place: Place) -> None:
         """A line as text, and its words; raises ExpandError."""
-        for line in plain(Said(text, words, comments), self.machine):
-            self._take(*line, place)
+        try:
+            for line in self._lathe.plain(Said(text, words, comments)):
+                self._take(*line, place)
+        except LineError as error:
+            raise ExpandError(place, error) from None
 
     def _take(self, text: str, words: Sequence[Word], comments: Sequence[str], place: Place) -> None:
         codes = {word.code for word in words if word.letter == "G"}
@@ -202,6 +206,8 @@ class Output:
         machine, side = self.machine, ON[code]
         if machine.mode(PLANE) == 190:
             raise ExpandError(place, f"{_name(code)} is for the planes XY and ZX: write G17 or G18")
+        if max(machine.plane) >= machine.axes:
+            raise ExpandError(place, f"{_name(code)}: the machine has only one axis of this plane")
         radius = self._radius(code, words, place)
         if radius < 0:
             side, radius = -side, -radius

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: MIT
+"""Motions in step with a spindle, at the pins; ten taps: `python -m benchmarks.rigid_tapping`."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from passo.failure import BadInputError
+from passo.part import Played
+
+from benchmarks.rigid_tapping import COUNTS, DEPTH, STEPS_PER_MM, WITHIN, judge, play, program, turned
+
+
+def test_two_holes_are_in_phase() -> None:
+    """Down, on while the spindle reverses, up, and at rest at the top; the judge sees steps that are late."""
+    played = play(program(2))
+    passes = judge(played)
+    assert len(passes) == 2 and played.problems() == []
+    for one in passes:
+        assert one.error <= WITHIN and one.end == one.late == 0 and one.deepest > DEPTH
+    counts = 32_000_000 * 60 * 3 // (600 * COUNTS)
+    late = replace(played, clocks=[clocks + counts for clocks in played.clocks])
+    assert all(one.error > 2 for one in judge(late))
+
+
+def errors(played: Played, places: list[float], pitches: list[float]) -> np.ndarray:
+    """How far each step down is from a thread between places, in counts; first, from any begin of a turn."""
+    clocks, positions = played.clocks[2], played.positions[2] / STEPS_PER_MM
+    first = np.flatnonzero((np.diff(positions) < 0) & (positions[:-1] <= places[0]))[0] + 1
+    down = slice(first, first + int(np.argmin(positions[first:])) + 1)
+    edges, angles = turned(played.counts, len(played.machine.motors))
+    middle = positions[down] + 0.5 / STEPS_PER_MM
+    way = np.interp(-middle, [-place for place in places], np.cumsum([0, *pitches]))
+    seen = np.interp(clocks[down] + played.origin, edges, angles) - way
+    return seen - COUNTS * round(float(np.median(seen)) / COUNTS)
+
+
+def test_a_thread_of_several_pitches() -> None:
+    """One pass; from the run-in to the run-out, and where the pitch changes, all steps are on it."""
+    played = play("M3 S600\nG0 Z12\nG33 Z5 K1.25\nG33 Z0 K2\nG0 Z20\nM5\nM2\n")
+    assert played.threads == 1 and played.problems() == []
+    found = errors(played, [12, 5, 0], [7 / 1.25 * COUNTS, 5 / 2 * COUNTS])
+    inside = found[round(4.5 * STEPS_PER_MM) : -round(1 * STEPS_PER_MM)]
+    assert len(inside) > 6 * STEPS_PER_MM and np.abs(inside).max() <= WITHIN
+    assert np.abs(found).max() > 10
+
+
+@pytest.mark.parametrize(
+    ("lines", "told"),
+    [
+        ("G33 Z0 K8", "part.nc:3: program_poll: FOLLOW_SPEED"),
+        ("G33 Z9 K1.25", "part.nc:3: program_poll: .*ramp"),
+        ("G33.1 Z9.9 K1.25", "part.nc:3: program_poll: .*ramp"),
+    ],
+)
+def test_what_axes_cannot_follow_is_refused(lines: str, told: str) -> None:
+    """Before the pass."""
+    with pytest.raises(BadInputError, match=told):
+        play(f"M3 S600\nG0 Z10\n{lines}\nM2\n")
+
+
+def test_motors_may_have_encoders_as_well() -> None:
+    """They follow the axis."""
+    played = play("M3 S600\nG0 Z5\nG33 Z-2 K1.25\nM2\n", more="encoders = [40]\nfollowing = 0.1\n")
+    assert played.threads == 1 and played.problems() == [] and 0 < played.following["Z"] <= 0.05
