@@ -167,7 +167,7 @@ def gaps(seed: int, seconds: float, count: int) -> Callable[[], float]:
 
 
 def die(seed: int) -> tuple[str, int]:
-    """A host fails while the axes move; the cause of the stop, and the steps by which the next host is off."""
+    """A host fails while the axes move: the cause of the stop, and steps by which the next host is off."""
     rng = random.Random(seed)
     period = rng.choice([PERIOD, 0.008])  # the queue ends before the watchdog, or after
     times, places = smooth(seed, 6, period)
