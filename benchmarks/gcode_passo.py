@@ -52,8 +52,9 @@ class Passo:
             elif action.kind == c.PASSO_GCODE_THREAD:
                 self.motions.append(self._motion(action, None))
                 if action.rigid:
-                    back = tuple(n / NANOMETERS for n in self.gcode.position)
-                    self.motions.append(replace(self.motions[-1], end=back))
+                    back = [n / NANOMETERS for n in self.gcode.position]
+                    end = (*back, *(0.0,) * (AXES - len(back)))
+                    self.motions.append(replace(self.motions[-1], end=end))
             if action.kind == c.PASSO_GCODE_PROBE:
                 self._touch(began)
         if arc is not None:

@@ -59,7 +59,7 @@ def test_what_axes_cannot_follow_is_refused(lines: str, told: str) -> None:
         play(f"M3 S600\nG0 Z10\n{lines}\nM2\n")
 
 
-def test_motors_may_have_encoders_as_well() -> None:
-    """They follow the axis."""
-    played = play("M3 S600\nG0 Z5\nG33 Z-2 K1.25\nM2\n", more="encoders = [40]\nfollowing = 0.1\n")
-    assert played.threads == 1 and played.problems() == [] and 0 < played.following["Z"] <= 0.05
+def test_no_encoders_of_axes_beside_that_of_the_spindle() -> None:
+    """One sentence, before anything is played."""
+    with pytest.raises(BadInputError, match="spindle: not beside encoders of axes"):
+        play("M2\n", more="encoders = [40]\nfollowing = 0.1\n")

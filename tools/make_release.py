@@ -31,6 +31,7 @@ from pathlib import Path
 
 from passo.failure import BadInputError, Failure
 from passo.make_command import make_machine
+from passo.output import write_bytes, write_text
 from passo.toolchain import paths, short
 
 PROMISES = paths.tools / "release.toml"
@@ -155,8 +156,8 @@ def pack(name: str, files: dict[str, tuple[bytes, int]], epoch: int, out: Path) 
             archive.addfile(member, io.BytesIO(content))
     out.mkdir(parents=True, exist_ok=True)
     made = out / f"{name}.tar.gz"
-    made.write_bytes(gzip.compress(packed.getvalue(), 9, mtime=epoch))
-    made.with_name(f"{made.name}.sha256").write_text(f"{digest(made.read_bytes())}  {made.name}\n")
+    write_bytes(made, gzip.compress(packed.getvalue(), 9, mtime=epoch))
+    write_text(made.with_name(f"{made.name}.sha256"), f"{digest(made.read_bytes())}  {made.name}\n")
     return made
 
 

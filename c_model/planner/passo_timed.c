@@ -289,8 +289,8 @@ const char *passo_timed_error_text(enum passo_timed_error error)
 	    [PASSO_TIMED_FAR] = "it is out of range",
 	    [PASSO_TIMED_SPEED] = "the way to it is faster than the speed of the axis",
 	    [PASSO_TIMED_ACCELERATION] =
-		"the speed changes by more than the acceleration allows: give points "
-		"closer together, or more time",
+		("the speed changes by more than the acceleration allows: give points "
+		 "closer together, or more time"),
 	    [PASSO_TIMED_STEPS] = "the way to it needs more than a step in two clocks",
 	    [PASSO_TIMED_PINS] = "the way to it needs steps faster than the pin timing allows",
 	    [PASSO_TIMED_SETTINGS] = "axes, clock or motors are not possible",
