@@ -125,7 +125,8 @@ def test_the_core_does_the_same() -> None:
     for make in (model_engine, rtl_engine):
         with make(CORE, CLOCK_HZ) as engine:
             driver = driver_at(engine)
-            assert Follow(driver, times, places / 60).error == 0
+            follow = Follow(driver, times, places / 60)
+            assert follow.error == 0
             found.append(finish(driver, engine))
     assert len(found[0]) > 20
     assert np.array_equal(*found)
@@ -136,7 +137,8 @@ def test_a_chain_of_motions_and_a_single_point() -> None:
     with model_engine(CORE, CLOCK_HZ) as engine:
         driver = driver_at(engine)
         for target in (0.5, 1.0, 0.25):
-            assert Follow(driver, [0.1], [[target, -target, 0]]).error == 0
+            follow = Follow(driver, [0.1], [[target, -target, 0]])
+            assert follow.error == 0
             finish(driver, engine)
             assert driver.positions()[:3] == [target * 80, -target * 80, 0]
 
@@ -173,7 +175,8 @@ def test_pins_limits_of_motors_and_machines() -> None:
     with model_engine(CORE, CLOCK_HZ) as engine:
         driver = driver_at(engine, PinTiming(100, 100, 1, 1))
         assert Follow(driver, [0.1], [[0, 100.01, 0]], fast).refusal == ("PINS", 0, 4)
-        assert Follow(driver, [0.1], [[0, 99.9, 0]], fast).error == 0
+        follow = Follow(driver, [0.1], [[0, 99.9, 0]], fast)
+        assert follow.error == 0
         finish(driver, engine)
         both = replace(fast, motors=Motors(((1, 1, 0), (1, -1, 0), (0, 0, 1)), PathAxis(0, 150, 0, 150)))
         assert Follow(driver, [1.0], [[160 - 99.9 / 2, 99.9 / 2, 0]], both).refusal == ("SPEED", 0, 3)
@@ -209,7 +212,8 @@ def test_a_late_host_slows_along_the_points() -> None:
     places = np.stack([x, x / 2, 0 * x], axis=1)
     with model_engine(CORE, CLOCK_HZ) as engine:
         driver = driver_at(engine)
-        assert Follow(driver, times, places).error == 0
+        follow = Follow(driver, times, places)
+        assert follow.error == 0
         events = []
         for _ in range(700):
             driver.poll()
