@@ -47,12 +47,13 @@ enum passo_gcode_error passo_gcode_check_thread(struct passo_gcode_check *check)
 void passo_gcode_thread(const struct passo_gcode *gcode, struct passo_gcode_action *action)
 {
 	const struct passo_gcode_job *job = &gcode->job;
+	const int64_t wanted = passo_gcode_wanted_speed(gcode, job->stopover[0]);
 
 	action->kind = PASSO_GCODE_THREAD;
 	action->rigid = gcode->mode[PASSO_GCODE_MOTION] == PASSO_GCODE_G(33, 1);
 	action->pitch = job->pitch;
-	action->speed = passo_gcode_speed(gcode, passo_gcode_wanted_speed(gcode, job->stopover[0]));
-	action->output = passo_gcode_output_at(gcode, passo_gcode_wanted_speed(gcode, job->stopover[0]));
+	action->speed = passo_gcode_speed(gcode, wanted);
+	action->output = passo_gcode_output_at(gcode, wanted);
 	action->feed = passo_gcode_feed(passo_mul_div(job->pitch, action->speed, PASSO_GCODE_MILLION));
 	passo_gcode_copy(gcode, job->stopover, action->target);
 }

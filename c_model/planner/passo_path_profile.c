@@ -185,9 +185,7 @@ static bool comes_down(const struct passo_path_item *next, uint64_t left, uint64
 		length += parts[--count].length;
 	return length >= turn;
 }
-#endif
 
-#ifndef PASSO_WITHOUT_ROUNDING
 /* The way up behind a level part begins with less slope instead: it is faster sooner. */
 static unsigned rise_evenly(struct passo_path_part *parts, unsigned count, uint64_t over, uint64_t square)
 {

@@ -49,7 +49,7 @@ uint32_t passo_path_too_fast(const struct passo_path_planner *path, const struct
 
 			if (square > most && most > 0)
 				return index + 1;
-			corner += (uint64_t)passo_path_item(path, index + 1)->substeps << 32;
+			corner += (uint64_t)item->substeps << 32;
 		}
 	}
 	return path->added;

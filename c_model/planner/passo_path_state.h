@@ -51,7 +51,6 @@ struct passo_path_curve {
 	uint32_t loss; /* UQ0.32: what a square at its end takes of that; no packed number */
 };
 
-/* A line of the path, private. Squares are those of velocities, UQ0.64 (substeps per clock)^2. */
 #ifndef PASSO_WITHOUT_ROUNDING
 /* Of the acceleration of an axis at a lone corner, UQ1.7. */
 struct passo_path_share {
@@ -62,6 +61,7 @@ struct passo_path_share {
 #define PASSO_PATH_SHARES 2u
 #endif
 
+/* A line of the path, private. Squares are those of velocities, UQ0.64 (substeps per clock)^2. */
 struct passo_path_item {
 	uint32_t feed;   /* velocity, UQ0.32 */
 	uint32_t limit;  /* highest velocity within the line, by its axes */
