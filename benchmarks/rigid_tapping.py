@@ -107,12 +107,12 @@ def judge(played: Played, axis: int = 2) -> list[Pass]:
     return found
 
 
-def play(text: str, engine: str = "model", more: str = "") -> Played:
-    """A program on the machine of this page; `more`: lines of its axis Z."""
+def play(text: str, engine: str = "model", more: str = "", head: str = MACHINE) -> Played:
+    """A program on the machine of this page, or one that begins with `head`; `more`: lines of its axis Z."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         axes = "".join(AXIS.format(letter, STEPS_PER_MM if letter == "Z" else 80) for letter in "XYZ")
-        (folder / "machine.toml").write_text(MACHINE + axes + more)
+        (folder / "machine.toml").write_text(head + axes + more)
         (folder / "part.nc").write_text(text)
         machine = read_machine(folder / "machine.toml")
         part = read_part(folder / "part.nc", machine)

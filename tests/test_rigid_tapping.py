@@ -5,10 +5,22 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from passo import part
 from passo.failure import BadInputError
 from passo.part import Played
+from passo.spindle_at import SpindleAt
 
-from benchmarks.rigid_tapping import COUNTS, DEPTH, STEPS_PER_MM, WITHIN, judge, play, program, turned
+from benchmarks.rigid_tapping import (
+    COUNTS,
+    DEPTH,
+    MACHINE,
+    STEPS_PER_MM,
+    WITHIN,
+    judge,
+    play,
+    program,
+    turned,
+)
 
 
 def test_two_holes_are_in_phase() -> None:
@@ -59,7 +71,31 @@ def test_what_axes_cannot_follow_is_refused(lines: str, told: str) -> None:
         play(f"M3 S600\nG0 Z10\n{lines}\nM2\n")
 
 
-def test_no_encoders_of_axes_beside_that_of_the_spindle() -> None:
-    """One sentence, before anything is played."""
-    with pytest.raises(BadInputError, match="spindle: not beside encoders of axes"):
-        play("M2\n", more="encoders = [40]\nfollowing = 0.1\n")
+ENCODER = "encoders = [800]\nfollowing = 0.05\n"
+SMALL = MACHINE.replace("32_000_000", "4_000_000").replace(f"counts = {COUNTS}", "counts = 200")
+TAP = "M3 S600\nG0 Z1\nG33.1 Z0 K.5\nG0 Z2\nM5\nM2\n"
+
+
+@pytest.mark.parametrize("engine", ["model", "both"])
+def test_encoders_of_axes_beside_that_of_the_spindle(engine: str) -> None:
+    """Nothing at the pins is as much as a clock from where it is without them."""
+    without, played = play(TAP, head=SMALL), play(TAP, engine, ENCODER, SMALL)
+    assert played.problems() == [] and played.threads == 1
+    assert 0 < played.following["Z"] <= 1.5 / STEPS_PER_MM
+    for own, other in zip(played.clocks, without.clocks, strict=True):
+        assert np.array_equal(own, other)
+
+
+def test_a_motor_that_leaves_its_encoder_in_a_pass(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It stops, on the line of the thread."""
+
+    class Slipping(SpindleAt):
+        def drive(self, power: int) -> None:
+            super().drive(power)
+            ((library, rig),) = self._rigs
+            if library.passo_rig_position(rig, 2) == STEPS_PER_MM // 2:
+                library.passo_rig_slip(rig, 0, -200)
+
+    monkeypatch.setattr(part, "SpindleAt", Slipping)
+    with pytest.raises(BadInputError, match="part.nc:3: program_poll: FOLLOWING"):
+        play(TAP, more=ENCODER, head=SMALL)
