@@ -230,6 +230,9 @@ static void apply_travel(struct passo_grbl *grbl)
 
 	grbl->limits = (struct passo_player_machine){
 	    .axis = grbl->path.axis, .limited = passo_grbl_is_on(settings, PASSO_GRBL_SOFT_LIMITS)};
+#ifndef PASSO_WITHOUT_THREADS
+	grbl->limits.deviation = grbl->path.junction_deviation;
+#endif
 	for (unsigned axis = 0; axis < grbl->path.machine.axes; axis++)
 		grbl->limits.low[axis] = -settings->axis[PASSO_GRBL_TRAVEL][axis];
 #ifndef PASSO_PLAIN_GCODE
