@@ -146,7 +146,8 @@ def refused_rows() -> str:
         words = [f"`{letter}{code / 10:g}`" for code in ends]
         rows.append((error, " to ".join(words), norm, advice))
     for letter, told in LETTERS.items():
-        rows.append((LETTER_ERRORS[letter], f"`{letter}`", *told.split(": ", 1)))
+        norm, advice = told.split(": ", 1)
+        rows.append((LETTER_ERRORS[letter], f"`{letter}`", norm, advice))
     rows.sort(key=lambda row: row[0])
     return "".join(f"| {' | '.join(map(str, row))} |\n" for row in rows)
 

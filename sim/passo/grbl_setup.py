@@ -144,6 +144,8 @@ def setup_of(machine: MachineFile, parameters: Parameters, defaults: Any, pages:
     made.squared = sum(1 << axis for axis in machine.squared)
     made.racking = round(machine.switches.racking * 1000)
     made.encoders = encoders
+    if parameters.encoders and parameters.axes > len(machine.motors):
+        made.turn_counts = machine.gcode.turn_counts
     made.probe, made.pages = machine.switches.probe, pages
     return made
 

@@ -85,6 +85,7 @@ enum passo_player_step {
 struct passo_player_thread {
 	enum passo_player_step step;
 	bool rigid;
+	uint32_t line;      /* N of its last line */
 	uint32_t output;    /* word of its lines */
 	uint64_t speed;     /* counts/s that the program asks for, UQ32.32; this and the following too */
 	uint64_t top_speed; /* that the axes can follow */
@@ -147,6 +148,9 @@ bool passo_player_has_taken(const struct passo_player *player);
 bool passo_player_is_ready(const struct passo_player *player);
 /* Whether nothing moves and nothing is pending. */
 bool passo_player_is_idle(const struct passo_player *player);
+
+/* Whether a motion is in step with the spindle, or waits for it. */
+bool passo_player_follows(const struct passo_player *player);
 
 /* Accepts as many actions as fit, and polls the driver. Errors: those of passo_path_feed_poll(),
  * passo_probe(), and PASSO_ERROR_PLAN + those of passo_path_add(); the line is then dropped. */

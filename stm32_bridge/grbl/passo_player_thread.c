@@ -103,6 +103,7 @@ static void add_line(struct passo_player *player)
 	int64_t begin[PASSO_AXES_MAX] = {0}, end[PASSO_AXES_MAX] = {0};
 	struct passo_u128 square = {0, 0};
 
+	thread->line = action->line;
 	steps_at(player, thread->end, begin);
 	steps_at(player, action->target, end);
 	for (unsigned axis = 0; axis < player->gcode->settings.axes; axis++) {
@@ -153,7 +154,8 @@ enum passo_error passo_player_begin_thread(struct passo_player *player)
 bool passo_player_continues(struct passo_player *player)
 {
 	if (player->action.kind != PASSO_GCODE_THREAD || player->action.rigid
-	    || !passo_player_collects(player) || player->action.output != player->thread.output)
+	    || !passo_player_collects(player) || player->action.output != player->thread.output
+	    || !passo_player_allows(player, player->action.target))
 		return false;
 	add_line(player);
 	return true;
@@ -208,11 +210,13 @@ static enum passo_error begin_pass(struct passo_player *player)
 	return error == PASSO_ERROR_MOVING ? PASSO_OK : error;
 }
 
-/* Waits until the spindle turns at half its speed at least. */
+/* Waits until the spindle turns at half its speed at least, and while held. */
 static enum passo_error spin(struct passo_player *player)
 {
 	struct passo_encoder_reading *reading = &player->thread.reading;
 
+	if (player->held)
+		return PASSO_OK;
 	if (reading->valid && passo_driver_now(player->feed->passo) - reading->at < SPEED_MICROSECONDS)
 		return PASSO_OK;
 	const enum passo_error error = read_encoder(player, reading);
