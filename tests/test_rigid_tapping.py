@@ -120,6 +120,20 @@ def test_lines_of_a_pass_meet_within_the_junction_deviation() -> None:
     assert told.startswith("axis 2: ") and "acceleration" in told
 
 
+def test_tapered_ends() -> None:
+    """Each pass is three lines; X and Z are on the thread at all steps of X, within a step and a count."""
+    played = play("M3 S600\nG0 X10 Z5\nG76 P1 Z0 I-1 J.4 K.5 E1.5 L3\nM2\n", head=SMALL)
+    assert [one.lines for one in played.passes] == [3, 3] and played.problems() == []
+    assert faults(shares_of(played)) == []
+    x, z = (np.concatenate([[0], positions]) for positions in (played.positions[0], played.positions[2]))
+    for one, cut in zip(played.passes, (9 - 0.4, 9 - 0.5), strict=True):
+        own = slice(*np.searchsorted(played.clocks[0], [one.begin - played.origin, one.end - played.origin]))
+        clocks, places = played.clocks[0][own], (x[own] + x[1:][own]) / 2 / 80
+        along = z[np.searchsorted(played.clocks[2], clocks)] / STEPS_PER_MM
+        wanted = cut + 0.5 * np.maximum(0, np.maximum(along - 3.5, 1.5 - along) / 1.5)
+        assert len(places) == 2 * 40 and np.abs(places - wanted).max() <= 1 / STEPS_PER_MM + 1 / 200
+
+
 ENCODER = "encoders = [800]\nfollowing = 0.05\n"
 TAP = "M3 S600\nG0 Z1\nG33.1 Z0 K.5\nG0 Z2\nM5\nM2\n"
 
