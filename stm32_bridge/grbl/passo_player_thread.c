@@ -72,8 +72,8 @@ static void limit(struct passo_player *player, unsigned axis, uint64_t steps, ui
 	thread->run = run >= thread->run ? (uint32_t)(run < UINT16_MAX ? run + 1u : UINT16_MAX) : thread->run;
 }
 
-/* Where a line of `counts` follows the last one, an axis changes its speed at once. It may by as much as is
- * within the junction deviation at its acceleration, or by its start-stop speed. */
+/* Where a line of `counts` follows the last one, an axis changes its speed immediately. It may by as much as
+ * is within the junction deviation at its acceleration, or by its start-stop speed. */
 static void limit_corner(struct passo_player *player, unsigned axis, int64_t steps, uint32_t counts)
 {
 	const struct passo_path_axis *limits = &player->machine->axis[axis];
