@@ -78,6 +78,8 @@ def turned(changes: np.ndarray, bit: int) -> tuple[np.ndarray, np.ndarray]:
 
 def judge(played: Played, axis: int = 2) -> list[Pass]:
     """All passes, of which each begins and ends at the same position of the axis."""
+    assert played.machine.spindle
+    counts = played.machine.spindle.counts
     clocks, positions = played.clocks[axis], played.positions[axis]
     edges, angles = turned(played.counts, len(played.machine.motors))
     angle = np.interp(clocks + played.origin, edges, angles)
@@ -86,12 +88,12 @@ def judge(played: Played, axis: int = 2) -> list[Pass]:
     starts = np.flatnonzero((positions[:-1] == top) & (np.diff(positions) < 0)) + 1
     for first, after in zip(starts, [*starts[1:], len(positions)], strict=True):
         last = first + int(np.argmax(positions[first:after] >= top))
-        way = (top - middle[first : last + 1]) / STEPS_PER_MM / PITCH * COUNTS
-        in_work = way > APPROACH / PITCH * COUNTS
+        way = (top - middle[first : last + 1]) / STEPS_PER_MM / PITCH * counts
+        in_work = way > APPROACH / PITCH * counts
         turn = int(np.argmin(positions[first : last + 1])) + 1
         seen = angle[first : last + 1] - way
         phase = float(np.mean(seen[:turn][in_work[:turn]]))
-        began = COUNTS * round(phase / COUNTS)
+        began = counts * round(phase / counts)
         up = seen[turn:][in_work[turn:]] - began
         rest = positions[last + 1 : after]
         found.append(
@@ -107,12 +109,12 @@ def judge(played: Played, axis: int = 2) -> list[Pass]:
     return found
 
 
-def play(text: str, engine: str = "model", more: str = "") -> Played:
-    """A program on the machine of this page; `more`: lines of its axis Z."""
+def play(text: str, engine: str = "model", more: str = "", head: str = MACHINE) -> Played:
+    """A program on the machine of this page, or one that begins with `head`; `more`: lines of its axis Z."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         axes = "".join(AXIS.format(letter, STEPS_PER_MM if letter == "Z" else 80) for letter in "XYZ")
-        (folder / "machine.toml").write_text(MACHINE + axes + more)
+        (folder / "machine.toml").write_text(head + axes + more)
         (folder / "part.nc").write_text(text)
         machine = read_machine(folder / "machine.toml")
         part = read_part(folder / "part.nc", machine)

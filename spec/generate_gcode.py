@@ -9,7 +9,7 @@ import tomllib
 from pathlib import Path
 
 from generated import is_check, keep
-from passo.expand.refusals import ADVICE, LETTERS
+from passo.expand.refusals import ADVICE, LETTER_ERRORS, LETTERS
 
 ROOT = Path(__file__).resolve().parent.parent
 SOURCE = ROOT / "spec" / "gcode_differences.toml"
@@ -29,10 +29,11 @@ compares Passo and LinuxCNC.
 REFUSED = """
 ## Refused words
 
-Error 20 or 23 of a firmware; `passo run`, `passo preview` and `passo expand` say so themselves.
+By the error of a firmware with all words; others say 20 for what they lack. `passo run`, `passo preview` and
+`passo expand` say norm and advice themselves.
 
-| word | norm | what to do |
-|---|---|---|
+| error | word | norm | what to do |
+|---:|---|---|---|
 """
 TABLES = "docs/gcode.md"
 BEGIN, END = "<!-- report: make generate writes {} from here -->\n", "<!-- to here -->"
@@ -139,15 +140,16 @@ def write_page() -> str:
 def refused_rows() -> str:
     """What passo.expand.refusals says."""
     rows = []
-    for letter, codes, norm, advice in ADVICE:
+    for letter, codes, error, norm, advice in ADVICE:
         whole = 1 if letter == "G" else 10  # M has no tenths
         ends = dict.fromkeys(code // whole * whole for code in (codes.start, codes.stop - 1))
         words = [f"`{letter}{code / 10:g}`" for code in ends]
-        rows.append(f"| {' to '.join(words)} | {norm} | {advice} |\n")
+        rows.append((error, " to ".join(words), norm, advice))
     for letter, told in LETTERS.items():
         norm, advice = told.split(": ", 1)
-        rows.append(f"| `{letter}` | {norm} | {advice} |\n")
-    return "".join(rows)
+        rows.append((LETTER_ERRORS[letter], f"`{letter}`", norm, advice))
+    rows.sort(key=lambda row: row[0])
+    return "".join(f"| {' | '.join(map(str, row))} |\n" for row in rows)
 
 
 if __name__ == "__main__":

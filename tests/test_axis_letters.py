@@ -148,6 +148,40 @@ def test_the_console(tmp_path: Path) -> None:
         assert "[G54:0.000,0.000,0.000,0.000]" in session.line("$#")
 
 
+@pytest.mark.parametrize(("letters", "z"), [("XZ", 1), ("XZC", 1), ("XYZC", 2)])
+def test_tool_lengths_by_the_probe(tmp_path: Path, letters: str, z: int) -> None:
+    """Of Z, whichever axis it is; Z touches a quarter of its travel below. A machine without Z has none."""
+    path = file_of(tmp_path, letters)
+    path.write_text("probe = true\n" + path.read_text())
+    machine = read_machine(path)
+    with machine_at("model", machine) as engine:
+        session = GrblConsole(engine, machine)
+        session.limit(60)
+        session.line("$X")
+        assert session.line("$342=60") == session.line("$344=3000") == session.line("$345=3000") == "ok"
+        assert session.line("$343=300") == session.line("G10 L1 P3 Z7") == "ok"
+        assert session.line("$TPW").endswith("ok") and session.line("$TLR") == "ok"
+        touched = [0.0] * len(letters)
+        touched[z] = -50
+        assert session.fields("MPos") == pytest.approx([at + 4 * (at != 0) for at in touched], abs=0.02)
+        session.grbl.c.reference -= 3_500_000  # as if the first tool had been so much shorter
+        assert session.line("$TPW").endswith("ok") and "[TLO:3.500]" in session.line("$#")
+        lengths = ",".join(f"{7 * (axis == z):.3f}" for axis in range(len(letters)))
+        assert f"[T:3,{lengths},0.000]" in session.line("$#")
+        assert session.fields("WCO") == [3.5 * (axis == z) for axis in range(len(letters))]
+
+
+def test_a_machine_without_z_has_no_tool_length(tmp_path: Path) -> None:
+    """Its third axis is not taken for Z."""
+    path = file_of(tmp_path, "XYA")
+    path.write_text("probe = true\n" + path.read_text())
+    machine = read_machine(path)
+    with machine_at("model", machine) as engine:
+        session = GrblConsole(engine, machine)
+        session.line("$X")
+        assert session.line("$TPW") == session.line("$TLR") == "error:47"
+
+
 @pytest.mark.parametrize(
     ("letters", "said"),
     [

@@ -2,13 +2,21 @@
 """Diameters, threads and taps as plain lines."""
 
 import json
+import math
+import random
+import re
+from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
+from passo import random_cases
 from passo.cli import main
 from passo.toolchain import paths
 
 from benchmarks.gcode_expand import compare_expanded, play_expanded
+from benchmarks.gcode_motion import verdict
+from benchmarks.gcode_rs274 import play_rs274
 from tests.test_expand import expanded, refusal
 
 HEAD = ["G21 G18 G8 G0 X10 Z5", "M3 S100"]
@@ -27,6 +35,61 @@ def test_a_thread(text: str) -> None:
     program = [*HEAD, *text.split("\n")]
     assert compare_expanded(program) == ""
     assert len(play_expanded(program).motions) == THREADS[text]
+
+
+TAPERED = {  # and lines that are in step
+    "G76 P1.5 Z-20 I-1 J0.3 K0.9 E2 L1": 6,
+    "G76 P1.5 Z-20 I-1 J0.3 K0.9 E2 L2": 6,
+    "G76 P1.5 Z-20 I1 J0.3 K0.9 R1.5 Q29.5 H2 E1.25 L3": 24,
+    "G91 G76 P1.5 Z-20 I-1 J0.3 K0.9 X3 E12.5 L2\nG0 X1": 6,
+    "G20 G0 X1 Z1\nG76 P.05 Z-.5 I-.1 J.01 K.04 R2 Q30 E.1 L3\nG0 Z1": 48,
+    "G76 P1 Z9 I-1 J0.3 K0.4 Q20 E1 L3": 6,
+    "G76 P1.5 Z-20 I-1 J0.3 K0.9 E2": 3,
+    "G76 P1.5 Z-20 I-1 J0.3 K0.9 E2 L0": 3,
+    "G76 P1.5 Z-20 I-1 J0.3 K0.9 L3": 3,
+    "G76 P1.5 Z-20 I-1 J0.3 K0.9 E-2 L3": 3,
+}
+
+
+@pytest.mark.parametrize("text", TAPERED)
+def test_tapered_ends(text: str) -> None:
+    """All passes are those of rs274, but that the way in, at right angles to the thread, is a rapid."""
+    program = [*HEAD, *text.split("\n")]
+    ours, theirs = play_expanded(program), play_rs274(program)
+    for k, (before, motion) in enumerate(pairwise(theirs.motions), 1):
+        if motion.feed and motion.end[2] == before.end[2]:
+            theirs.motions[k] = replace(motion, feed=0)
+    assert verdict(ours, theirs) == ""
+    assert sum(motion.feed > 0 for motion in ours.motions) == TAPERED[text]
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_each_turn_of_a_thread_is_a_pitch_along_it(seed: int, tmp_path: Path) -> None:
+    """In its tapers too; these have its height, and all passes begin at the same angle of the thread."""
+    rng = random.Random(f"{random_cases.seed()} {seed}")
+    pitch, height, taper = (round(rng.uniform(0.5, 3), 3) for _ in range(3))
+    end, ends, inner = rng.choice((-30, 30)), rng.randrange(4), rng.choice((-1, 1))
+    asked = f"P{pitch} Z{end} I{inner} J{height / 4} K{height} E{taper} L{ends}"
+    lines = expanded(tmp_path, f"M3 S9\nG0 X20 Z0\nG76 {asked}\n")
+    at, passes, g33 = {"X": 20.0, "Z": 0.0}, [[]], False
+    for line in lines[2:]:
+        words = {letter: float(value) for letter, value in re.findall(r"([GXZK])(-?[0-9.]+)", line)}
+        g33 = words.get("G", 33 if g33 else 0) == 33
+        to = {letter: words.get(letter, at[letter]) for letter in at}
+        if g33:
+            along, across = to["Z"] - at["Z"], to["X"] - at["X"]
+            assert abs(along) / (math.hypot(along, across) / words["K"]) == pytest.approx(pitch, rel=1e-5)
+            passes[-1].append((along, across))
+        elif passes[-1]:
+            passes.append([])
+        at = to
+    sense, out = math.copysign(1, end), math.copysign(1, inner)
+    begins, stops = [(sense * taper, out * height)], [(sense * taper, -out * height)]
+    rest = end - sense * taper * ends.bit_count()
+    wanted = begins * (ends & 1) + [(rest, 0.0)] + stops * (ends >> 1)
+    assert len(passes) == 5 and passes.pop() == []
+    for made in passes:
+        assert made == [pytest.approx(one, abs=3e-6) for one in wanted]
 
 
 def test_words_of_a_thread_are_diameters_after_g7(tmp_path: Path) -> None:
@@ -57,7 +120,8 @@ def test_holes(tmp_path: Path) -> None:
         ("S0\nG84 Z-5 R2 F9", "2: G84 needs F and S"), ("G84 Z-5 R2 F9 P1", "1: G84 takes neither P"),
         ("G84 Z5 R2 F9", "1: G84: Z must not be above R"), ("G84 G0 Z-1 R1 F9", "1: G84 and G0 are both"),
         ("G76 Z-9", "1: G76 lacks P"), ("G76 P1 Z-9 I-1 J.5 K.2", "1: G76: K must be greater"),
-        ("G76 P1 Z-9 I-1 J.1 K.2 E1", "1: G76: E and L"),
+        ("G76 P1 Z-9 I-1 J.1 K.2 E8 L3", "1: G76: E: the tapered ends are longer"),
+        ("G76 P1 Z-9 I-1 J.1 K.2 E1 L4", "1: G76: L must be 0 to 3"),
         ("G76 P1 Z-9 I-1 J.0001 K9 R3", "1: G76 makes more"),
         ("M5\nG76 P1 Z-9 I-1 J.1 K.2", "2: error:42:"), ("G33 Z-5", "1: error:28:"),
     ],

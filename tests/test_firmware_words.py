@@ -16,7 +16,8 @@ from passo_stm32.grbl_board import BOTH_IMAGE, LARGE_IMAGE, SMALL_IMAGE, GrblBoa
 from passo_stm32.machine import Machine
 
 HZ = 36_000_000  # of the core
-PARAMETERS = replace(parameters_for(6), clock_hz=HZ, inputs=1, outputs=1, encoders=1)
+# Six axes, and the inputs of one more for the encoder of the spindle.
+PARAMETERS = replace(parameters_for(7), clock_hz=HZ, inputs=1, outputs=1, encoders=1)
 PAGE = (paths.docs / "gcode.md").read_text(encoding="utf-8")
 HEAD, *ROWS = (
     [cell.strip() for cell in line.strip("|").split("|")]
@@ -28,7 +29,7 @@ TAKES = {
 }
 PLAIN = [word for word, takes in TAKES.items() if re.fullmatch(r"[A-Z][0-9.]*", word) and takes["grbl CB"]]
 IMAGES = {"grbl C8": SMALL_IMAGE, "grbl CB": LARGE_IMAGE, "both CB": BOTH_IMAGE}
-IN_STEP = ("G33", "G33.1")  # with the spindle: on the PC only
+SPINDLE = {"grbl CB": ("TURN_COUNTS=1000",)}
 NOT_TAKEN = ("error:20", "error:23")
 PAUSE = "M0"
 EXPANDED = {
@@ -41,24 +42,25 @@ EXPANDED = {
 
 def test_it_has_a_column_for_each_image() -> None:
     assert HEAD[1:] == ["console C8", *IMAGES, "PC"]
-    assert len(PLAIN) > 80 and set(TAKES) - set(PLAIN) == {*EXPANDED, *IN_STEP}
+    assert len(PLAIN) > 80 and set(TAKES) - set(PLAIN) == EXPANDED.keys()
 
 
 @pytest.mark.parametrize("name", IMAGES)
 def test_an_image(name: str) -> None:
     """A word is taken, or its line lacks something; or it is not supported."""
-    folder = "_".join(("firmware", *IMAGES[name])).replace("=", "_")
-    elf = grbl_elf(paths.build / "tests" / folder, image=IMAGES[name])
+    given = SPINDLE.get(name, ())
+    folder = "_".join(("firmware", *IMAGES[name], *given)).replace("=", "_")
+    elf = grbl_elf(paths.build / "tests" / folder, *given, image=IMAGES[name])
     found = {}
     with model_engine(PARAMETERS, HZ) as engine:
         board = GrblBoard(engine, elf)
-        for word in (*PLAIN, *IN_STEP):
+        for word in PLAIN:
             said = board.line(word if len(word) > 1 else f"{word}0")
             found[word] = said.splitlines()[-1] not in NOT_TAKEN
             if word == PAUSE:
                 board.type("~")
         assert not board.faults
-    assert found == {word: bool(TAKES[word][name]) for word in (*PLAIN, *IN_STEP)}
+    assert found == {word: bool(TAKES[word][name]) for word in PLAIN}
 
 
 def test_the_console_has_none() -> None:

@@ -66,6 +66,19 @@ def test_the_table_has_all_words() -> None:
     assert all(set(norm.split(", ")) <= NORMS for *_, norm in ROWS)
 
 
+def test_refused_words_have_their_errors() -> None:
+    """Of each row of the page of differences, the first word."""
+    page = (paths.docs / "reference" / "gcode_differences.md").read_text()
+    rows = re.findall(r"^\| (\d+) \| `([A-Z][0-9.]*)`.* \| [^|]+ \| [^|]+ \|$", page, re.M)
+    assert len(rows) > 20
+    gcode = GcodeSettings(axes=6)
+    for number, word in rows:
+        line = {"G92": "G92.2"}.get(word, word if len(word) > 1 else f"{word}1")
+        with pytest.raises(GcodeError) as caught:
+            Gcode(gcode).execute(line)
+        assert caught.value.number == int(number), word
+
+
 def known_command(word: str) -> bool:
     """Whether there is such a command, though its line may lack something."""
     return refused(word) not in (20, 23)

@@ -69,7 +69,7 @@ class Share:
 
 @dataclass(frozen=True)
 class Marks:
-    """Times (s, ascending) of the corners, and corner x limit: by how much they may be rounded (mm)."""
+    """Times (s, ascending), as of corners, and time x limit: by how much the axis may be off then (mm)."""
 
     time: np.ndarray
     off: np.ndarray
@@ -78,6 +78,13 @@ class Marks:
     def none(cls, axes: int) -> "Marks":
         """A path without corners, with this number of limits."""
         return cls(np.empty(0), np.empty((0, axes)))
+
+    def with_more(self, more: Sequence[tuple[np.ndarray, np.ndarray]]) -> "Marks":
+        """With further times, and how far each limit may be off then."""
+        time = np.concatenate([self.time, *(times for times, _ in more)])
+        off = np.concatenate([self.off, *(offs for _, offs in more)])
+        order = np.argsort(time, kind="stable")
+        return Marks(time[order], off[order])
 
     @classmethod
     def of(

@@ -32,7 +32,6 @@ PAGE = 2048  # bytes, as of the STM32F103CB
 PAGES = 2
 WORD = 4
 TOUCH = {"TOUCH_DISTANCE": 30, "TOUCH_FEED": 25, "TOUCH_SEEK": 200, "TOUCH_PULL_OFF": 200}  # $342 to $345
-PROBED = 3  # the probe is at Z
 
 
 def setting_counts(machine: MachineFile) -> Any:
@@ -145,6 +144,8 @@ def setup_of(machine: MachineFile, parameters: Parameters, defaults: Any, pages:
     made.squared = sum(1 << axis for axis in machine.squared)
     made.racking = round(machine.switches.racking * 1000)
     made.encoders = encoders
+    if parameters.encoders and parameters.axes > len(machine.motors):
+        made.turn_counts = machine.gcode.turn_counts
     made.probe, made.pages = machine.switches.probe, pages
     return made
 
@@ -180,7 +181,7 @@ def attach(engine: Any, machine: MachineFile, skews: dict[int, int] | None = Non
                 if machine.bits(switch, axis) >> motor & 1
             ]
     if machine.switches.probe:
-        axis = min(len(machine.ends), PROBED) - 1
+        axis = machine.letters.index("Z") if "Z" in machine.letters else len(travels) - 1
         wires.append((NUMBERS["probe"], 0, axis, False, travels[axis] // 4))
     for wire, (pin, bit, axis, above, at) in zip(config.wire, wires, strict=False):
         wire.input, wire.bit, wire.above = pin, bit, above

@@ -295,8 +295,6 @@ def _spindle(data: Table, maximum: int) -> Spindle | None:
     check_known(table, SPINDLE_KEYS)
     if not maximum:
         raise BadValueError("it needs spindle_maximum")
-    if any("encoders" in axis for axis in data.get("axis", ())):
-        raise BadValueError("not beside encoders of axes: leave one of them out")
     if "board" in data:
         raise BadValueError("no board has pins for its encoder: write clock_hz instead of board")
     counts = read_integer(table, "counts", COUNTS.start, COUNTS.stop - 1)

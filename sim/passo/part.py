@@ -72,6 +72,31 @@ class Part:
 
 
 @dataclass(frozen=True)
+class Pass:
+    """In step with the spindle."""
+
+    begin: int  # clock; so is the end
+    end: int
+    lines: int  # of the program
+
+
+class _Passes:
+    """Those of a program, looked at after each poll."""
+
+    def __init__(self, program: Program, engine: Engine | PairEngine):
+        self.found: list[Pass] = []
+        self._program, self._engine, self._begin = program, engine, 0
+
+    def look(self) -> None:
+        """One has begun or ended, or not."""
+        program, clock = self._program, self._engine.clock
+        if program.threads > len(self.found):
+            self.found.append(Pass(self._begin, clock, program.pass_lines))
+        if not program.follows:
+            self._begin = clock
+
+
+@dataclass(frozen=True)
 class Played:
     """What left the pins."""
 
@@ -88,8 +113,13 @@ class Played:
     origin: int  # clock of the start of the first motion
     following: dict[str, float]  # greatest following errors of motors with an encoder, in mm
     canceled: str = ""  # where, if it was
-    threads: int = 0  # passes in step with the spindle
+    passes: Sequence[Pass] = ()
     counts: np.ndarray = field(default_factory=lambda: np.empty(0, CHANGE))  # of the encoder of the spindle
+
+    @property
+    def threads(self) -> int:
+        """Passes in step with the spindle."""
+        return len(self.passes)
 
     @cached_property
     def seconds(self) -> float:
@@ -275,6 +305,12 @@ def play_part(
     spindle = SpindleAt(engine, machine) if machine.spindle else None
     if spindle:
         program.c.machine.spindle = motors
+    passes = _Passes(program, engine)
+
+    def poll() -> None:
+        program.poll()
+        passes.look()
+
     loop = HostLoop(engine, machine.clock_hz // LOOPS_PER_SECOND)
     waiting, taken, begun = iter(part.lines), 0, 0  # begun: of the thread that lines continue
     last, quiet = -1, engine.clock
@@ -288,12 +324,12 @@ def play_part(
                     taken += 1
                 else:
                     program.end()
-                program.poll()
+                poll()
             if spindle:
                 spindle.drive(program.power)
                 polls = FOLLOWS_PER_SECOND if program.follows else LOOPS_PER_SECOND
                 loop.period = machine.clock_hz // polls
-            loop.turn(program.poll, lambda: program.rests)
+            loop.turn(poll, lambda: program.rests)
             if program.chords != last:
                 last, quiet = program.chords, engine.clock
                 progress(last)
@@ -313,7 +349,7 @@ def play_part(
     return Played(
         *(part, machine, steps.clocks, steps.positions, motions, end, drained, cause, matched),
         *(steps.events, steps.origin, _following(driver, machine), canceled),
-        *([program.threads, spindle.changes()] if spindle else []),
+        *([passes.found, spindle.changes()] if spindle else []),
     )
 
 

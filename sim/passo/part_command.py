@@ -69,7 +69,9 @@ def run_part(files: Sequence[Path], asked: Asked) -> bool:
     elif not found:
         print(f"{part.path.name}: {len(part.lines)} lines, {part.chords} chords in {played.seconds:.6g} s")
         limits = ", ".join(_limit(machine, share) for share in greatest(judged).values())
-        print(f"greatest share of a limit: {limits}" if judged else f"{played.threads} threads")
+        print(f"greatest share of a limit: {limits}")
+        if played.threads:
+            print(f"{played.threads} threads")
     print(f"results: {', '.join(str(out / name) for name in (PULSES, SUMMARY) if (out / name).exists())}")
     if window:
         say_waves(out)

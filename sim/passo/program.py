@@ -57,8 +57,16 @@ class Program:
         return self.c.player.threads
 
     @property
+    def pass_lines(self) -> int:
+        """Lines of the program in the last one."""
+        thread = self.c.player.thread
+        return 1 if thread.rigid else getattr(thread, "pass").lines
+
+    @property
     def power(self) -> int:
-        """Of the spindle, as commanded: up to 65535."""
+        """Of the spindle, as commanded: up to 65535. Lines behind a thread do not change its speed."""
+        if self.follows:
+            return self.c.player.thread.output & 0xFFFF
         return self._c.passo_gcode_output(ffi().addressof(self.c, "gcode")) & 0xFFFF
 
     def line(self, line: bytes) -> None:

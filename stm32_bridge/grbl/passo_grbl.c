@@ -222,8 +222,11 @@ void passo_grbl_poll(struct passo_grbl *grbl)
 	passo_grbl_mind_drives(grbl);
 	passo_grbl_mind_rate(grbl);
 	grbl->player->held = grbl->held;
+	const bool follows = passo_player_follows(grbl->player);
 	const enum passo_error error = passo_player_poll(grbl->player, &event);
 
+	if (grbl->held && follows && !passo_player_follows(grbl->player))
+		passo_hold(grbl->player->feed->passo);
 	passo_grbl_poll_message(grbl);
 	heed(grbl, event, error);
 	passo_grbl_poll_touch(grbl);

@@ -56,6 +56,9 @@ struct passo_grbl_setup {
 	 * error that stop the machine; null: there is no encoder. */
 	const uint64_t *encoders;
 #endif
+#ifndef PASSO_WITHOUT_THREADS
+	uint16_t turn_counts; /* of the encoder of the spindle, at the inputs behind the motors; 0: none */
+#endif
 	bool probe;                              /* a probe is fitted */
 	const struct passo_storage_pages *pages; /* null: no persistent storage */
 	/* Takes the text of a `$` line that is the board's own, at rest; null: it has none. */

@@ -230,6 +230,10 @@ static void apply_travel(struct passo_grbl *grbl)
 
 	grbl->limits = (struct passo_player_machine){
 	    .axis = grbl->path.axis, .limited = passo_grbl_is_on(settings, PASSO_GRBL_SOFT_LIMITS)};
+#ifndef PASSO_WITHOUT_THREADS
+	grbl->limits.deviation = grbl->path.junction_deviation;
+	grbl->limits.spindle = (uint8_t)passo_grbl_motors(grbl);
+#endif
 	for (unsigned axis = 0; axis < grbl->path.machine.axes; axis++)
 		grbl->limits.low[axis] = -settings->axis[PASSO_GRBL_TRAVEL][axis];
 #ifndef PASSO_PLAIN_GCODE
@@ -304,6 +308,9 @@ enum passo_gcode_error passo_grbl_apply(struct passo_grbl *grbl)
 #ifndef PASSO_PLAIN_GCODE
 		.inputs = passo->has_inputs ? (uint8_t)(1u + passo_grbl_motors(grbl)) : 0,
 		.power = passo->has_outputs,
+#endif
+#ifndef PASSO_WITHOUT_THREADS
+		.turn_counts = grbl->setup->turn_counts,
 #endif
 	    });
 	enum passo_error error = apply_pins(grbl, timing);

@@ -192,10 +192,12 @@ static bool has_changed(const struct passo_grbl *grbl)
 	    || grbl->spindle != grbl->spindle_now;
 }
 
-/* A hold that is not acknowledged is sent again by the driver. */
+/* A hold that is not acknowledged is sent again by the driver. A motion in step with the spindle is made to
+ * its end: passo_grbl_poll(). */
 static void hold(struct passo_grbl *grbl)
 {
-	passo_hold(grbl->player->feed->passo);
+	if (!passo_player_follows(grbl->player))
+		passo_hold(grbl->player->feed->passo);
 	grbl->held = true;
 }
 

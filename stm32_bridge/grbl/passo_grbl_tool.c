@@ -10,18 +10,26 @@
 
 #include "passo_math.h"
 
-#define TOOL_AXIS 2u       /* Z */
 #define RETRACT_NM 2000000 /* between the fast and the slow probe; twice that at the end */
 #define OPTIONAL 383       /* as G38.3 */
 #define SECONDS_PER_MINUTE 60u
 
 enum touch { TOUCH_NONE, TOUCH_SEEK, TOUCH_BACK, TOUCH_FEED, TOUCH_CLEAR };
 
-static bool has_tool_axis(const struct passo_grbl *grbl)
+/* Z; the number of axes if there is none. */
+static unsigned tool_axis(const struct passo_grbl *grbl)
 {
 	const struct passo_gcode_settings *settings = &grbl->player->gcode->settings;
+	unsigned axis = 0;
 
-	return settings->axes > TOOL_AXIS && passo_gcode_axis_letter(settings->left_out, TOOL_AXIS) == 'Z';
+	while (axis < settings->axes && passo_gcode_axis_letter(settings->left_out, axis) != 'Z')
+		axis++;
+	return axis;
+}
+
+static bool has_tool_axis(const struct passo_grbl *grbl)
+{
+	return tool_axis(grbl) < grbl->player->gcode->settings.axes;
 }
 
 void passo_grbl_begin_change(struct passo_grbl *grbl)
@@ -36,15 +44,15 @@ void passo_grbl_report_tools(struct passo_grbl *grbl)
 	const struct passo_gcode *gcode = grbl->player->gcode;
 
 	for (unsigned tool = 0; tool < PASSO_GCODE_TOOLS && has_tool_axis(grbl); tool++) {
-		const passo_gcode_position offset = {[TOOL_AXIS] = gcode->offsets.tool_length[tool]};
+		const int64_t length = gcode->offsets.tool_length[tool];
 
-		if (offset[TOOL_AXIS] == 0)
+		if (length == 0)
 			continue;
 		passo_grbl_say(grbl, "[T:");
 		passo_grbl_say_number(grbl, tool + 1u);
 		for (unsigned axis = 0; axis < gcode->settings.axes; axis++) {
 			passo_grbl_say(grbl, ",");
-			passo_grbl_say_length(grbl, offset[axis]);
+			passo_grbl_say_length(grbl, axis == tool_axis(grbl) ? length : 0);
 		}
 		passo_grbl_say(grbl, ",");
 		passo_grbl_say_length(grbl, 0); /* the radius */
@@ -56,7 +64,7 @@ enum passo_gcode_error passo_grbl_set_reference(struct passo_grbl *grbl)
 {
 	if (!grbl->player->touched || !has_tool_axis(grbl))
 		return PASSO_GCODE_TOOL_LENGTH_UNKNOWN;
-	grbl->reference = grbl->player->touch[TOOL_AXIS];
+	grbl->reference = grbl->player->touch[tool_axis(grbl)];
 	grbl->measured = true;
 	return PASSO_GCODE_OK;
 }
@@ -66,6 +74,7 @@ static void move(struct passo_grbl *grbl, enum touch step, int64_t target, enum 
 {
 	struct passo_gcode *gcode = grbl->player->gcode;
 	const struct passo_player_machine *limits = grbl->player->machine;
+	const unsigned tool = tool_axis(grbl);
 	struct passo_gcode_action action = {.line = gcode->line,
 	    .probe = PASSO_GCODE_NONE,
 	    .feed = passo_mul_div((uint64_t)grbl->stored.settings.value[feed], UINT64_C(1) << 32,
@@ -77,11 +86,11 @@ static void move(struct passo_grbl *grbl, enum touch step, int64_t target, enum 
 	}
 	for (unsigned axis = 0; axis < gcode->settings.axes; axis++)
 		action.target[axis] = gcode->position[axis];
-	action.target[TOOL_AXIS] = target;
-	if (limits->limited && target < limits->low[TOOL_AXIS])
-		action.target[TOOL_AXIS] = limits->low[TOOL_AXIS];
-	if (limits->limited && target > limits->high[TOOL_AXIS])
-		action.target[TOOL_AXIS] = limits->high[TOOL_AXIS];
+	action.target[tool] = target;
+	if (limits->limited && target < limits->low[tool])
+		action.target[tool] = limits->low[tool];
+	if (limits->limited && target > limits->high[tool])
+		action.target[tool] = limits->high[tool];
 	passo_gcode_set_position(gcode, action.target);
 	passo_player_take(grbl->player, &action);
 	grbl->touch = (uint8_t)step;
@@ -94,7 +103,7 @@ enum passo_gcode_error passo_grbl_touch(struct passo_grbl *grbl)
 	if (!has_tool_axis(grbl) || !grbl->setup->probe)
 		return PASSO_GCODE_TOOL_LENGTH_UNKNOWN;
 	move(grbl, TOUCH_SEEK,
-	    gcode->position[TOOL_AXIS] - grbl->stored.settings.value[PASSO_GRBL_TOUCH_DISTANCE],
+	    gcode->position[tool_axis(grbl)] - grbl->stored.settings.value[PASSO_GRBL_TOUCH_DISTANCE],
 	    PASSO_GRBL_TOUCH_SEEK);
 	return PASSO_GCODE_OK;
 }
@@ -109,10 +118,10 @@ static void end(struct passo_grbl *grbl, enum passo_gcode_error error)
 void passo_grbl_poll_touch(struct passo_grbl *grbl)
 {
 	struct passo_player *player = grbl->player;
-	const int64_t at = player->touch[TOOL_AXIS];
 
 	if (grbl->touch == TOUCH_NONE || !passo_player_is_idle(player))
 		return;
+	const int64_t at = player->touch[tool_axis(grbl)];
 	if (!player->touched && grbl->touch != TOUCH_CLEAR) {
 		passo_grbl_say(grbl, "[MSG:Probe failed, try again]\r\n");
 		end(grbl, PASSO_GCODE_TOOL_LENGTH_UNKNOWN);

@@ -362,7 +362,13 @@ static enum passo_error take_action(struct passo_player *player, enum passo_play
 		break;
 	case PASSO_GCODE_THREAD:
 #ifndef PASSO_WITHOUT_THREADS
-		return player->machine->rehearses ? rehearse(player, event) : take_at_rest(player, event);
+		if (player->machine->rehearses)
+			return rehearse(player, event);
+		if (passo_player_allows(player, player->action.target))
+			return take_at_rest(player, event);
+		*event = PASSO_PLAYER_TRAVEL;
+		passo_player_drop(player);
+		break;
 #endif
 	case PASSO_GCODE_PROBE:
 	case PASSO_GCODE_PAUSE:

@@ -47,6 +47,7 @@ struct passo_player_machine {
 	uint8_t
 	    spindle;    /* motor whose encoder inputs the spindle has; see passo_gcode_settings.turn_counts */
 	bool rehearses; /* no spindle: threads are lines at the feed of its speed */
+	uint64_t deviation; /* UQ32.32 mm: by which an axis may be off where lines of a thread meet */
 #endif
 };
 
@@ -84,12 +85,15 @@ enum passo_player_step {
 struct passo_player_thread {
 	enum passo_player_step step;
 	bool rigid;
+	uint32_t line;      /* N of its last line */
 	uint32_t output;    /* word of its lines */
 	uint64_t speed;     /* counts/s that the program asks for, UQ32.32; this and the following too */
 	uint64_t top_speed; /* that the axes can follow */
-	uint32_t run;       /* counts in which they come to rest */
-	int32_t from[PASSO_AXES_MAX]; /* where it begins, in steps of the motors */
-	passo_gcode_position end;     /* of the last line */
+	uint64_t corner_speed[PASSO_PASS_LINES_MAX - 1u]; /* the same where each line meets the next */
+	uint32_t run;                                     /* counts in which they come to rest */
+	int32_t way[PASSO_AXES_MAX];                      /* steps of the axes in the last line */
+	int32_t from[PASSO_AXES_MAX];                     /* where it begins, in steps of the motors */
+	passo_gcode_position end;                         /* of the last line */
 	struct passo_pass pass;
 	struct passo_encoder_reading reading;
 	int32_t began; /* count at which a rigid one began */
@@ -144,6 +148,9 @@ bool passo_player_has_taken(const struct passo_player *player);
 bool passo_player_is_ready(const struct passo_player *player);
 /* Whether nothing moves and nothing is pending. */
 bool passo_player_is_idle(const struct passo_player *player);
+
+/* Whether a motion is in step with the spindle, or waits for it. */
+bool passo_player_follows(const struct passo_player *player);
 
 /* Accepts as many actions as fit, and polls the driver. Errors: those of passo_path_feed_poll(),
  * passo_probe(), and PASSO_ERROR_PLAN + those of passo_path_add(); the line is then dropped. */

@@ -38,7 +38,7 @@ enum passo_player_motion passo_player_motion(const struct passo_player *player)
 	const bool moves = passo_is_moving(feed->passo);
 	const uint32_t index = moves ? feed->moving : feed->path->sent;
 
-	if (player->probes || feed->passo->task.kind == PASSO_TASK_HOME)
+	if (player->probes || passo_player_follows(player) || feed->passo->task.kind == PASSO_TASK_HOME)
 		return PASSO_PLAYER_SEEK;
 	if (index == feed->path->added)
 		return PASSO_PLAYER_AT_REST;
@@ -55,6 +55,12 @@ bool passo_player_moving_line(const struct passo_player *player, struct passo_pl
 		*line = (struct passo_player_line){player->action.line, player->action.output};
 		return true;
 	}
+#ifndef PASSO_WITHOUT_THREADS
+	if (passo_player_follows(player)) {
+		*line = (struct passo_player_line){player->thread.line, player->thread.output};
+		return true;
+	}
+#endif
 	if (!passo_is_moving(feed->passo) || feed->path->added - index > PASSO_PLAYER_LINES
 	    || feed->path->added == index)
 		return false;

@@ -24,8 +24,7 @@ bool passo_player_continues(struct passo_player *player);
 /* Its part of a poll. Errors: those of passo_pass(); FOLLOW_SPEED if an axis cannot follow the spindle. */
 enum passo_error passo_player_follow(struct passo_player *player);
 #endif
-/* Whether a motion is in step with the spindle, and whether another line could continue it. */
-bool passo_player_follows(const struct passo_player *player);
+/* Whether another line could continue the motion in step with the spindle. */
 bool passo_player_collects(const struct passo_player *player);
 /* Keeps what the line of G-code says of a line of the path. */
 void passo_player_note(struct passo_player *player, uint32_t index);

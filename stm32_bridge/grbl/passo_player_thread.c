@@ -72,6 +72,27 @@ static void limit(struct passo_player *player, unsigned axis, uint64_t steps, ui
 	thread->run = run >= thread->run ? (uint32_t)(run < UINT16_MAX ? run + 1u : UINT16_MAX) : thread->run;
 }
 
+/* Where a line of `counts` follows the last one, an axis changes its speed immediately. It may by as much as
+ * is within the junction deviation at its acceleration, or by its start-stop speed. */
+static void limit_corner(struct passo_player *player, unsigned axis, int64_t steps, uint32_t counts)
+{
+	const struct passo_path_axis *limits = &player->machine->axis[axis];
+	struct passo_player_thread *thread = &player->thread;
+	const unsigned corner = thread->pass.lines - 2u;
+	const uint32_t before = thread->pass.line[corner].half_counts / 2u;
+	const uint64_t change = passo_size64(steps * before - thread->way[axis] * (int64_t)counts);
+	const struct passo_u128 square = passo_multiply(limits->acceleration, player->machine->deviation);
+	const uint64_t rounded = passo_isqrt128(passo_u128_shift_left(square, 3));
+	const uint64_t most = limits->jump > rounded ? limits->jump : rounded;
+
+	if (change == 0u)
+		return;
+	const uint64_t speed = passo_mul_div(
+	    passo_mul_div(most, limits->steps_per_mm, UINT64_C(1) << 32), (uint64_t)before * counts, change);
+	thread->corner_speed[corner] =
+	    speed < thread->corner_speed[corner] ? speed : thread->corner_speed[corner];
+}
+
 /* Adds the line of the action to the pass. */
 static void add_line(struct passo_player *player)
 {
@@ -82,6 +103,7 @@ static void add_line(struct passo_player *player)
 	int64_t begin[PASSO_AXES_MAX] = {0}, end[PASSO_AXES_MAX] = {0};
 	struct passo_u128 square = {0, 0};
 
+	thread->line = action->line;
 	steps_at(player, thread->end, begin);
 	steps_at(player, action->target, end);
 	for (unsigned axis = 0; axis < player->gcode->settings.axes; axis++) {
@@ -94,8 +116,16 @@ static void add_line(struct passo_player *player)
 	const uint64_t twice = passo_mul_div(passo_isqrt128(square), turns, action->pitch);
 	const uint32_t counts = twice < UINT32_C(1) << 30 ? (uint32_t)(twice + 1u) / 2u : 0u;
 	line->half_counts = 2u * counts;
-	for (unsigned axis = 0; axis < player->gcode->settings.axes && counts > 0u; axis++)
-		limit(player, axis, passo_size64(end[axis] - begin[axis]), counts);
+	if (thread->pass.lines > 1u)
+		thread->corner_speed[thread->pass.lines - 2u] = UINT64_MAX;
+	for (unsigned axis = 0; axis < player->gcode->settings.axes && counts > 0u; axis++) {
+		const int64_t steps = end[axis] - begin[axis];
+
+		limit(player, axis, passo_size64(steps), counts);
+		if (thread->pass.lines > 1u)
+			limit_corner(player, axis, steps, counts);
+		thread->way[axis] = (int32_t)steps;
+	}
 	for (uint32_t motor = 0; motor < passo_path_motors(path); motor++)
 		line->steps[motor] = (int32_t)(passo_path_motor_place(path, motor, end)
 		                               - passo_path_motor_place(path, motor, begin));
@@ -124,9 +154,27 @@ enum passo_error passo_player_begin_thread(struct passo_player *player)
 bool passo_player_continues(struct passo_player *player)
 {
 	if (player->action.kind != PASSO_GCODE_THREAD || player->action.rigid
-	    || !passo_player_collects(player) || player->action.output != player->thread.output)
+	    || !passo_player_collects(player) || player->action.output != player->thread.output
+	    || !passo_player_allows(player, player->action.target))
 		return false;
 	add_line(player);
+	return true;
+}
+
+/* Whether all axes can follow the spindle from each line to the next; while the pass catches up, faster. */
+static bool passes_corners(const struct passo_player_thread *thread)
+{
+	uint64_t behind = 0;
+
+	for (unsigned corner = 0; corner + 1u < thread->pass.lines && !thread->rigid; corner++) {
+		uint64_t speed = MARGIN(thread->speed);
+
+		behind += thread->pass.line[corner].half_counts;
+		if (behind < 4u * (uint64_t)thread->pass.run_in)
+			speed = speed / 10u * PASSO_PASS_PEAK_TENTHS;
+		if (thread->corner_speed[corner] < speed)
+			return false;
+	}
 	return true;
 }
 
@@ -145,6 +193,8 @@ static enum passo_error begin_pass(struct passo_player *player)
 	pass->top_speed = top < 2u * thread->speed ? top : 2u * thread->speed;
 	pass->run_in = thread->run * PASSO_PASS_PEAK_TENTHS / 10u + 1u;
 	pass->run_out = thread->rigid ? 0u : thread->run;
+	if (!passes_corners(thread))
+		return PASSO_ERROR_FOLLOW_SPEED;
 	if (thread->rigid) {
 		for (pass->lines = 1; pass->lines < PASSO_PASS_LINES_MAX; pass->lines++)
 			pass->line[pass->lines] = pass->line[0];
@@ -160,11 +210,13 @@ static enum passo_error begin_pass(struct passo_player *player)
 	return error == PASSO_ERROR_MOVING ? PASSO_OK : error;
 }
 
-/* Waits until the spindle turns at half its speed at least. */
+/* Waits until the spindle turns at half its speed at least, and while held. */
 static enum passo_error spin(struct passo_player *player)
 {
 	struct passo_encoder_reading *reading = &player->thread.reading;
 
+	if (player->held)
+		return PASSO_OK;
 	if (reading->valid && passo_driver_now(player->feed->passo) - reading->at < SPEED_MICROSECONDS)
 		return PASSO_OK;
 	const enum passo_error error = read_encoder(player, reading);

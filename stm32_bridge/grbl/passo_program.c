@@ -18,6 +18,9 @@ enum passo_error passo_program_open(struct passo_program *program, struct passo 
 	for (unsigned axis = 0; axis < PASSO_AXES_MAX; axis++)
 		program->axis[axis] = settings->path.axis[axis];
 	program->machine = (struct passo_player_machine){.axis = program->axis, .inputs = settings->inputs};
+#ifndef PASSO_WITHOUT_THREADS
+	program->machine.deviation = settings->path.junction_deviation;
+#endif
 	program->ends = false;
 	passo_path_feed_open(&program->feed, passo, &program->path);
 	passo_gcode_open(&program->gcode, &settings->gcode);

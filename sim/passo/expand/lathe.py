@@ -87,7 +87,7 @@ class Lathe:
         return values, said(rest, line.comments) if rest or line.comments else None
 
     def _thread(self, line: Said) -> Iterator[Said]:
-        """G76, as LinuxCNC 2.9 has it."""
+        """G76, as LinuxCNC 2.9 has it, but that the way in to a tapered end is a rapid."""
         machine = self.machine
         values, rest = self._split(line, {THREADING}, "XZPIJKRQHEL", "G76")
         if rest:
@@ -95,8 +95,9 @@ class Lathe:
         for letter in "ZPIJK":
             if letter not in values:
                 raise LineError(f"G76 lacks {letter}")
-        if values.get("E", 0) or values.get("L", 0):
-            raise LineError("G76: E and L: tapered ends are not supported: a thread is one line")
+        ends, taper = values.get("L", 0), max(0.0, values.get("E", 0))
+        if ends not in range(4):
+            raise LineError("G76: L must be 0 to 3: 1, the beginning is tapered, 2, the end, 3, both")
         share = 2 if machine.diameters else 1
         peak, first, height = (abs(values[letter]) / share for letter in "IJK")
         if height <= first or not first:
@@ -104,17 +105,30 @@ class Lathe:
         x, z = (self._place(letter, "G76") for letter in "XZ")
         base_x, base_z = (x, z) if machine.incremental else (0.0, 0.0)
         end_x, end_z = base_x + values["X"] if "X" in values else x, base_z + values["Z"]
-        slope = math.tan(math.radians(values.get("Q", 0))) * (-1 if end_z > z else 1)
+        sense = 1 if end_z > z else -1
+        slope = -sense * math.tan(math.radians(values.get("Q", 0)))
+        tapered = [taper if int(ends) & end else 0.0 for end in (1, 2)]
+        if sum(tapered) > abs(end_z - z):
+            raise LineError("G76: E: the tapered ends are longer than the thread")
+        pitch = Word("K", values["P"])
+        steep = Word("K", values["P"] * (math.hypot(taper, height) / taper if taper else 1))
         outward = 1 if values["I"] > 0 else -1  # into the work
         absolute = [Word("G", 90)] if machine.incremental else []
         back = [Word("G", 91)] if machine.incremental else []
         for depth in _depths(first, height, max(1.0, values.get("R", 1)), round(values.get("H", 0))):
             clear, cut = (x + outward * way for way in (depth - height, peak + depth))
+            touch = Word("X", cut - outward * height)
             begin, end = z - depth * slope, end_z + (height - depth) * slope
             yield said([*absolute, Word("G", 0), Word("X", clear), Word("Z", begin)])
             absolute = []
-            yield said([Word("X", cut)])
-            yield said([Word("G", 33), Word("Z", end), Word("K", values["P"])])
+            if tapered[0]:
+                yield said([touch])
+                yield said([Word("G", 33), Word("X", cut), Word("Z", begin + sense * taper), steep])
+            else:
+                yield said([Word("X", cut)])
+            yield said([Word("G", 33), Word("Z", end - sense * tapered[1]), pitch])
+            if tapered[1]:
+                yield said([touch, Word("Z", end), steep])
             yield said([Word("G", 0), Word("X", clear)])
         yield said([Word("X", end_x), Word("Z", end_z)])
         if back:

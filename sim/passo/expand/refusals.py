@@ -8,31 +8,34 @@ from passo.gcode import AXIS_LETTERS, Gcode, GcodeError, GcodeSettings
 
 NOT_TAKEN = frozenset((3, 20, 23))  # errors of a command that Passo does not have
 UNUSED, NO_PORT = 36, 39
-# By the command in tenths, or a range of them: norm, and what to do.
-ADVICE: tuple[tuple[str, range, str, str], ...] = (
-    ("G", range(50, 54), "LinuxCNC", "a spline: let the CAM program write G1, G2 and G3"),
-    ("G", range(101, 102), "LinuxCNC", "edit the tool table instead"),
-    ("G", range(171, 192), "LinuxCNC", "there are no axes U V W"),
-    ("G", range(330, 332), "LinuxCNC", "the spindle needs an encoder: [spindle] of the machine file"),
-    ("G", range(410, 423), "NIST", "expand the file: passo expand"),
-    ("G", range(500, 515), "NIST, FIDIA", "scale in the CAM program"),
-    ("G", range(520, 521), "LinuxCNC, Fanuc", "write G92, or G10 L2"),
-    ("G", range(591, 594), "LinuxCNC", "Passo has the systems G54 to G59"),
-    ("G", range(740, 900), "NIST, LinuxCNC", "let the CAM program write out the cycle, or passo expand"),
-    ("G", range(901, 902), "LinuxCNC", "write I J K as increments"),
-    ("G", range(920, 924), "NIST", "G92 and G92.1 are taken"),
-    ("M", range(190, 200), "LinuxCNC", "the spindle cannot be oriented"),
-    ("M", range(480, 540), "NIST, LinuxCNC", "overrides are the sender's: leave it out"),
-    ("M", range(600, 610), "NIST", "pause with M0"),
-    ("M", range(700, 740), "LinuxCNC", "write the modes that are to be restored"),
-    ("M", range(820, 1100), "RepRap", "this is for 3D printers: leave it out"),
+# By the command in tenths, or a range of them: error of a firmware, of the first one that it has not, norm,
+# and what to do.
+ADVICE: tuple[tuple[str, range, int, str, str], ...] = (
+    ("G", range(50, 54), 20, "LinuxCNC", "a spline: let the CAM program write G1, G2 and G3"),
+    ("G", range(101, 102), 23, "LinuxCNC", "edit the tool table instead"),
+    ("G", range(171, 192), 23, "LinuxCNC", "there are no axes U V W"),
+    ("G", range(330, 332), 20, "LinuxCNC", "the spindle needs an encoder: [spindle] of the machine file"),
+    ("G", range(410, 423), 20, "NIST", "expand the file: passo expand"),
+    ("G", range(500, 515), 20, "NIST, FIDIA", "scale in the CAM program"),
+    ("G", range(520, 521), 20, "LinuxCNC, Fanuc", "write G92, or G10 L2"),
+    ("G", range(591, 594), 23, "LinuxCNC", "Passo has the systems G54 to G59"),
+    ("G", range(740, 900), 20, "NIST, LinuxCNC", "let the CAM program write out the cycle, or passo expand"),
+    ("G", range(901, 902), 20, "LinuxCNC", "write I J K as increments"),
+    ("G", range(920, 924), 20, "NIST", "G92 and G92.1 are taken"),
+    ("M", range(190, 200), 20, "LinuxCNC", "the spindle cannot be oriented"),
+    ("M", range(480, 540), 20, "NIST, LinuxCNC", "overrides are the sender's: leave it out"),
+    ("M", range(600, 610), 20, "NIST", "pause with M0"),
+    ("M", range(700, 740), 20, "LinuxCNC", "write the modes that are to be restored"),
+    ("M", range(820, 1100), 20, "RepRap", "this is for 3D printers: leave it out"),
     (
         "M",
         range(1000, 2000),
+        20,
         "LinuxCNC, RepRap",
         "a user's program, or for 3D printers: leave it out",
     ),
 )
+LETTER_ERRORS = {"D": 36, "E": 36, "U": 20, "V": 20, "W": 20}
 LETTERS = {
     "D": "NIST: a tool's diameter, with G41 or G42",
     "E": "RepRap: for 3D printers",
@@ -84,7 +87,7 @@ def _is_taken(word: Word, settings: GcodeSettings) -> bool:
 
 
 def _advice(word: Word) -> tuple[str, str]:
-    for letter, codes, norm, advice in ADVICE:
+    for letter, codes, _, norm, advice in ADVICE:
         if letter == word.letter and word.code in codes:
             return norm, advice
     return "of no norm that Passo follows", "leave it out, or write what it means"

@@ -6,7 +6,7 @@
 
 #define MILLION ((int64_t)PASSO_GCODE_MILLION)
 #define AXES_USED (AXES > 0 ? AXES : GRBL_AXES_MAX)
-#define AXES_NEEDED (MOTORS > 0 ? MOTORS : AXES > 0 ? AXES : 1)
+#define AXES_NEEDED ((MOTORS > 0 ? MOTORS : AXES > 0 ? AXES : 1) + (TURN_COUNTS > 0))
 #define UM_PER_MM 1000
 #define LINEAR_AXES 2u /* X and Y; Z and what follows are slow */
 
@@ -81,6 +81,11 @@ static void set_motors(struct passo_path_settings *path)
 }
 #endif
 
+#ifdef PASSO_WITHOUT_THREADS
+_Static_assert(TURN_COUNTS == 0, "the image has no threads");
+#endif
+_Static_assert(TURN_COUNTS <= UINT16_MAX, "a turn has at most 65535 counts");
+
 enum passo_error grbl_machine_check(struct passo *passo)
 {
 	const bool inputs = (LIMITS_LOW | LIMITS_HIGH | HOMES | PROBE) != 0;
@@ -90,7 +95,7 @@ enum passo_error grbl_machine_check(struct passo *passo)
 	if (inputs && !passo->has_inputs)
 		return PASSO_ERROR_NO_INPUTS;
 #ifndef PASSO_CARTESIAN
-	if (HAS_ENCODERS && !passo->has_encoders)
+	if ((HAS_ENCODERS || TURN_COUNTS > 0) && !passo->has_encoders)
 		return PASSO_ERROR_NO_ENCODERS;
 #endif
 	return OUTPUTS != 0 && !passo->has_outputs ? PASSO_ERROR_NO_OUTPUTS : PASSO_OK;
@@ -110,8 +115,13 @@ void grbl_machine(
 	    .probe = PROBE,
 	    .defaults = grbl_defaults,
 	    .pages = pages};
+	if (TURN_COUNTS > 0)
+		setup->path.machine.axes--; /* the inputs of the last one are those of the spindle */
 	if (setup->path.machine.axes > AXES_USED)
 		setup->path.machine.axes = AXES_USED;
+#ifndef PASSO_WITHOUT_THREADS
+	setup->turn_counts = TURN_COUNTS;
+#endif
 #ifndef PASSO_CARTESIAN
 	set_motors(&setup->path);
 	setup->squared = SQUARED;

@@ -86,6 +86,12 @@
 #define ENCODERS 0
 #endif
 
+/* Counts per turn of the encoder of the spindle, at the inputs of the core behind those of the motors; 0: it
+ * has none, and there are no threads. Not in an image with PASSO_WITHOUT_THREADS. */
+#ifndef TURN_COUNTS
+#define TURN_COUNTS 0
+#endif
+
 /* Axes that `$H` homes, by their home or limit switch. */
 #ifndef HOMED
 #define HOMED HOMES
