@@ -36,6 +36,18 @@ module passo_input #(
   reg  [WIDTH-1:0] pending;  // has differed since the last tick
   wire [WIDTH-1:0] differs = second ^ level;
 
+  // Kept: a LUT for two inputs.
+  localparam PAIRS = (WIDTH + 1) / 2;
+  (* keep *)
+  wire [PAIRS-1:0] changes;
+  wire [2*PAIRS-1:0] each_changes = {{(2 * PAIRS - WIDTH) {1'b0}}, first ^ second};
+  genvar pair;
+  generate
+    for (pair = 0; pair < PAIRS; pair = pair + 1) begin : g_changes
+      assign changes[pair] = each_changes[pair*2+:2] != 2'd0;
+    end
+  endgenerate
+
   reg changed;  // an input has changed since the last tick
   reg forgot;  // one clock ago: the synchronizer still holds old levels
 
@@ -47,7 +59,7 @@ module passo_input #(
     level      <= level ^ (differs & pending & {WIDTH{tick}});
     pending    <= differs & (pending ^ {WIDTH{tick}});
     was_active <= (was_active & ~clear) | level;
-    changed    <= forgot | (first != second) | (changed & ~tick);
+    changed    <= forgot | (changes != {PAIRS{1'b0}}) | (changed & ~tick);
     forgot     <= 1'b0;
     if (tick && !changed) unknown <= 1'b0;
     if (rst || forget) begin

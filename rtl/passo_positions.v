@@ -52,6 +52,14 @@ module passo_positions #(
   reg  latches;  // delayed
   wire latch_round = latch_waits & ~clear_waits;
 
+  // If they can be latched, what is captured are the counters of one clock ago, one clock later: a latched counter is
+  // one that has not followed since. So neither has to be chosen, and the round still is that of its slot 63.
+  reg  round_begins;
+  reg  axis_begins;
+  reg  wipes;  // zeroed one clock ago
+  wire takes = LATCH != 0 ? round_begins : round_ends;
+  wire shifts = LATCH != 0 ? axis_begins : axis_ends;
+
   // Counters, and the shift chain of captured bytes
   wire [7:0] captured[0:AXES];
   assign captured[AXES] = 8'd0;
@@ -61,14 +69,14 @@ module passo_positions #(
     for (axis = 0; axis < AXES; axis = axis + 1) begin : g_axis
       reg [7:0] count;
       reg [7:0] capture;
-      reg [7:0] latched;
+      reg [7:0] recent;  // `count` one clock ago, or on the clock of `latch` while it waits
       assign captured[axis] = capture;
       always @(posedge clk) begin
         if (step_made[axis]) count <= count + {{7{step_direction[axis]}}, 1'b1};
         if (rst || zero) count <= 8'd0;
-        if (axis_ends) capture <= !round_ends ? captured[axis+1] : latch_round ? latched : count;
-        if (latch && LATCH != 0) latched <= count;
-        if (rst || zero) latched <= 8'd0;
+        if (shifts) capture <= !takes ? captured[axis+1] : LATCH != 0 ? recent : count;
+        if (latch || !latch_waits) recent <= count;
+        if (wipes) recent <= 8'd0;
       end
     end
   endgenerate
@@ -106,9 +114,12 @@ module passo_positions #(
   );
 
   always @(posedge clk) begin
-    slot       <= slot + 6'd1;
-    round_ends <= slot == 6'd62;
-    axis_ends  <= slot[2:0] == 3'd6;
+    slot         <= slot + 6'd1;
+    round_ends   <= slot == 6'd62;
+    axis_ends    <= slot[2:0] == 3'd6;
+    round_begins <= round_ends;
+    axis_begins  <= axis_ends;
+    wipes        <= zero;
     if (phase == 2'd3) place <= slot[5:2];
     if (phase == 2'd1) copies <= copies_next;
     if (phase == 2'd1) latches <= latches_next;

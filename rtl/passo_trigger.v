@@ -35,29 +35,44 @@ module passo_trigger #(
   `include "passo_registers.vh"
 
   reg [ 2:0] source;
+  /* verilator lint_off UNUSEDSIGNAL */
   reg [ 2:0] axis;
+  /* verilator lint_on UNUSEDSIGNAL */
   reg        falling;
   reg [ 1:0] action;
   reg [ 1:0] stale;  // clocks until `picked` is that of the source
   reg        picked;
   reg [15:0] count;
 
-  // The source among those of all axes
-  wire [7:0] of_axis[0:3];
+  // The source among those of all axes: as many bits of `axis` as there are axes, and of `source` the lower two, which
+  // tell all but limit_low and index.
+  localparam AXIS_BITS = AXES > 4 ? 3 : AXES > 2 ? 2 : 1;
+  wire [(1<<AXIS_BITS)-1:0] of_axis[0:3];
+  wire [3:0] of_kind;
   genvar kind;
   generate
     for (kind = 0; kind < 4; kind = kind + 1) begin : g_kind
-      assign of_axis[kind] = {{(8 - AXES) {1'b0}}, sources[kind*AXES+:AXES]};
+      assign of_axis[kind] = {{((1 << AXIS_BITS) - AXES) {1'b0}}, sources[kind*AXES+:AXES]};
+      assign of_kind[kind] = of_axis[kind][axis[AXIS_BITS-1:0]];
     end
   endgenerate
-  wire chosen = source == TRIGGER_SOURCE_LIMIT_LOW  ? of_axis[0][axis] :
-                source == TRIGGER_SOURCE_LIMIT_HIGH ? of_axis[1][axis] :
-                source == TRIGGER_SOURCE_HOME       ? of_axis[2][axis] :
-                source == TRIGGER_SOURCE_INDEX      ? of_axis[3][axis] : probe;
+  wire chosen = source[1:0] == TRIGGER_SOURCE_LIMIT_HIGH[1:0] ? of_kind[1] :
+                source[1:0] == TRIGGER_SOURCE_HOME[1:0]       ? of_kind[2] :
+                source[1:0] == TRIGGER_SOURCE_PROBE[1:0]      ? probe :
+                source[2] == TRIGGER_SOURCE_INDEX[2]          ? of_kind[3] : of_kind[0];
 
   wire differs = picked ^ level;
   wire counts = armed ? differs : arming & ~differs;  // an edge that may be one; a level that may be known
-  wire accepts = counts & (count == filter) & (stale == 2'd0);
+  // Kept: a LUT for two bits.
+  (* keep *)
+  wire [7:0] lacks;  // up to the filter
+  genvar pair;
+  generate
+    for (pair = 0; pair < 8; pair = pair + 1) begin : g_lacks
+      assign lacks[pair] = count[pair*2+:2] != filter[pair*2+:2];
+    end
+  endgenerate
+  wire accepts = counts & (lacks == 8'd0) & (stale == 2'd0);
   wire fires = accepts & armed & (level == falling);
 
   assign hard_stop   = latch && action == TRIGGER_ACTION_HARD_STOP;

@@ -21,7 +21,7 @@ void passo_positions_clock(struct passo_positions *positions, const uint32_t val
 			positions->clear_waits = false;
 		} else if (positions->latch_waits) {
 			for (unsigned i = 0; i < PASSO_AXES_MAX; i++)
-				positions->latched_copies[i] = positions->latched[i];
+				positions->latched_copies[i] = latch ? values[i] : positions->latched[i];
 			positions->latch_waits = false;
 		} else if (positions->snapshot_waits) {
 			for (unsigned i = 0; i < PASSO_AXES_MAX; i++)
