@@ -38,7 +38,8 @@ OWN = (
     "passo_web_console.c",
     "passo_web_program.c",
 )
-WEB = ("runner.js", "share.js", "save.js", "web.js")
+MACHINE = ("toml.js", "values.js", "machine_file.js")  # reads machine files
+WEB = ("runner.js", "share.js", "save.js", *MACHINE, "web.js")
 WORKER = ("bytes.js", "motion.js", "worker.js")
 EXAMPLE = paths.root / "examples" / "gcode"
 # The warnings are those of GCC, which compiles the same sources elsewhere: Clang has others.

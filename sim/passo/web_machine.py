@@ -10,6 +10,7 @@ from passo.path import PathAxis
 from passo.run import AXES_OF_CORES
 
 MOTORS_MOST = 8
+LIMITS = ("steps_per_mm", "speed", "acceleration", "jump", "jerk")
 
 
 def web_machine(machine: MachineFile) -> dict[str, Any]:
@@ -49,4 +50,4 @@ def numbers(machine: MachineFile) -> list[float]:
 
 
 def _limits(axis: PathAxis) -> tuple[Any, ...]:
-    return axis.steps_per_mm, axis.speed, axis.acceleration, axis.jump, axis.jerk
+    return tuple(getattr(axis, name) for name in LIMITS)
