@@ -15,16 +15,12 @@ from passo.random_cases import seed
 from passo.report_page import source_of
 from passo.toolchain import paths
 from passo.web import MACHINE
-from passo.web_machine import web_machine
 from passo.web_rules import rules
 
 from tests.helpers.browser import Browser
+from tests.helpers.web_machine import web_machine
 
-FILES = sorted(
-    path
-    for folder in ("gcode", "machines")
-    for path in (paths.examples / folder).glob("*.toml")
-)
+FILES = sorted(path for folder in ("gcode", "machines") for path in (paths.examples / folder).glob("*.toml"))
 # Of what the examples do not have, by kind; each is right.
 KINDS = {
     "squaring": """
@@ -114,26 +110,45 @@ speed = 50
 acceleration = 500
 """,
 }
-# What is put in place of a value, and lines that are put between others.
-VALUES = (
-    *("", "1", "0", "-1", "1.0", "0.5", "-0.0", "1e9", "1e-31", "1e999999", "4294967296", "3.00", "16", "inf", "-nan"),
-    *("true", "false", '"x"', '"X"', '"Y"', '"high"', '"jerk"', '"corexy"', '"corexzz"', '"hx8k"', '"colorlight"', '"DM542"'),
-    *('"cosin"', "cosine", "1us", "1 us", '"1 parsec"', '"2us"', '" 2 µs "', '"-1us"', '"1e9 clocks"', '"0.1ns"', '"1_0us"'),
-    *("[]", "[1]", "[1, 2.5]", "[-1]", '["home"]', '["limit_low", "home"]', '["home", "home"]', "{}", "{ a = 1, b = [true] }"),
-    *("2020-02-30", "'''x''y'''", '"""\nx \\\n  y"""', '"\\q"', '"\\u00b5"', "0x10", "1__0", "01", "[1, [2]", '{ a = 1, a = 2 }', '"open'),
-    *("64_000_000", "66_000_000", "66_666_667", "12_000_001", "250_000", "999", "65536", "100000.5", "1234565", "0.00001234565"),
-)  # fmt: skip
-LINES = (
-    *("speeed = 1", "acceleraton = 1", "[axis]", "[[axis]]", "[pins]", "[spindle]", "[home]", "[home", "[[axis]", "= 1", "a", "a.b = 1"),
-    *('[pins]\nstep_high = "1us"', '[pins]\nstep_high = "7 s"', "[[motors]]", "pins.step_low = 1", '"quoted key" = 1', "# \x01", "key = 1 2"),
-    *("motors = 3", "encoders = [1]\nfollowing = 1", "jerk = 100", 'home = "low"', "laser = 1", "probe = true", "[switches]\nstop = 0"),
-    *('board = "ulx3s"', 'board = "tangnano9k"', 'drive = "TB6600"', "[home]\nracking = 5", "[home]\nseek = 0", "travel = 0", "chip = 1"),
-    *("[[x]]\ny = 1\n[x]", "x.y = 1\n[x]", "x = [1]\n[[x]]", "x = {}\nx.y = 1", "[x.y]\n[x]\n[x]", "switches = []", "😀 = 1", 'x = "😀" 1'),
-)  # fmt: skip
+# What is put in place of a value, and lines that are put between others; "⏎" is the end of a line.
+VALUES = r"""
+ | 1 | 0 | -1 | 1.0 | 0.5 | -0.0 | 1e9
+1e-31 | 1e999999 | 4294967296 | 3.00 | 16 | inf | -nan | true | false
+"x" | "X" | "Y" | "high" | "jerk" | "corexy"
+"corexzz" | "hx8k" | "colorlight" | "DM542" | "cosin" | cosine
+1us | 1 us | "1 parsec" | "2us" | " 2 µs " | "-1us"
+"1e9 clocks" | "0.1ns" | "1_0us" | "⏎ | '⏎ | '''⏎'''
+[] | [1] | [1, 2.5] | [-1]
+["home"] | ["limit_low", "home"] | ["home", "home"] | {} | { a = 1, b = [true] }
+2020-02-30 | '''x''y''' | QQQ⏎x \⏎  yQQQ | "\q" | "\u00b5"
+0x10 | 1__0 | 01 | [1, [2] | { a = 1, a = 2 } | "open
+64_000_000 | 66_000_000 | 66_666_667 | 12_000_001 | 250_000
+999 | 65536 | 100000.5 | 1234565 | 0.00001234565
+"""
+LINES = r"""
+speeed = 1 | acceleraton = 1 | [axis] | [[axis]] | [pins] | [spindle]
+[home] | [home | [[axis] | = 1 | a | a.b = 1
+[pins]⏎step_high = "1us" | [pins]⏎step_high = "7 s" | [[motors]]
+pins.step_low = 1 | "quoted key" = 1 | key = 1 2
+motors = 3 | encoders = [1]⏎following = 1 | jerk = 100
+home = "low" | laser = 1 | probe = true | [switches]⏎stop = 0
+board = "ulx3s" | board = "tangnano9k" | drive = "TB6600"
+[home]⏎racking = 5 | [home]⏎seek = 0 | travel = 0
+[[x]]⏎y = 1⏎[x] | x.y = 1⏎[x] | x = [1]⏎[[x]] | x = {}⏎x.y = 1
+[x.y]⏎[x]⏎[x] | switches = [] | 😀 = 1 | x = "😀" 1
+chip = 1 | # ␁
+"""
 RANDOM = 1500
 TRIED = """
 const tried = text => { try { return MachineReader.read(text); } catch (error) { return error.message; } }
 """
+
+
+def listed(text: str) -> list[str]:
+    """What stands between bars."""
+    marks = {"⏎": "\n", "QQQ": '"""', "␁": "\x01"}
+    parts = (part.strip(" ") for line in text.strip("\n").splitlines() for part in line.split("|"))
+    return [re.sub("|".join(marks), lambda found: marks[found[0]], part) for part in parts]
 
 
 def changed(text: str, rng: random.Random) -> str:
@@ -144,7 +159,7 @@ def changed(text: str, rng: random.Random) -> str:
         key, equals, value = lines[at].partition("=")
         kind = rng.randrange(8)
         if kind == 0:
-            lines.insert(at, rng.choice(LINES))
+            lines.insert(at, rng.choice(listed(LINES)))
         elif kind == 1:
             del lines[at]
         elif kind == 2:
@@ -155,20 +170,22 @@ def changed(text: str, rng: random.Random) -> str:
         elif kind == 4:
             lines[at] = re.sub(r"\d", lambda _: str(rng.randrange(10)), lines[at])
         elif equals:
-            lines[at] = f"{key}= {rng.choice(VALUES)}"
+            lines[at] = f"{key}= {rng.choice(listed(VALUES))}"
     return "\n".join(lines) + "\n"
 
 
 def texts() -> list[str]:
     """Files that are right, and wrong ones made of them."""
     rng, whole = random.Random(seed()), [path.read_text() for path in FILES] + list(KINDS.values())
-    each = [f"{text}\n{line}\n" for text in whole[:1] for line in LINES]
-    each += [f"{line}\n{text}" for text in whole[:1] for line in LINES]
-    each += [
-        re.sub(rf"^{key} = .*$", lambda _, value=value, key=key: f"{key} = {value}", text, count=1, flags=re.M)
-        for text, key in ((KINDS["squaring"], "speed"), (KINDS["board"], "clock_hz"), (KINDS["corexz"], "profile"))
-        for value in VALUES
-    ]
+    each = [f"{text}\n{line}\n" for text in whole[:1] for line in listed(LINES)]
+    each += [f"{line}\n{text}" for text in whole[:1] for line in listed(LINES)]
+    for text, key in (
+        (KINDS["squaring"], "speed"),
+        (KINDS["board"], "clock_hz"),
+        (KINDS["corexz"], "profile"),
+    ):
+        before, after = re.split(rf"^{key} = .*$", text, maxsplit=1, flags=re.M)
+        each += [f"{before}{key} = {value}{after}" for value in listed(VALUES)]
     return [*whole, "", *each, *(changed(rng.choice(whole), rng) for _ in range(RANDOM))]
 
 
@@ -192,7 +209,9 @@ def test_the_same_machines_and_messages(browser: Browser, tmp_path: Path) -> Non
     tried = texts()
     wanted = [of_command(text, tmp_path / "machine.toml") for text in tried]
     found = browser.value(f"{json.dumps(tried)}.map(tried)")
-    differ = [(text, own, other) for text, own, other in zip(tried, wanted, found, strict=True) if own != other]
+    differ = [
+        (text, own, other) for text, own, other in zip(tried, wanted, found, strict=True) if own != other
+    ]
     for text, own, other in differ[:20]:
         print(text, own, other, "", sep="\n")
     assert not differ

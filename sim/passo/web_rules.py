@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the page of `make web` has to know to check a machine file: keys, ranges, drives and boards, as JSON."""
+"""What the page of `make web` checks machine files and G-code by: keys, ranges, drives, boards, advice."""
 
 from itertools import chain, combinations
 from typing import Any
@@ -11,6 +11,9 @@ from passo_fpga.table import BoardError
 
 from passo import machine_file
 from passo.drives import drives
+from passo.expand import refusals
+from passo.expand.expander import NEEDS
+from passo.expand.flow import FLOW
 from passo.gcode import AXIS_LETTERS
 from passo.machine_file import AxisEnds, Spindle, Switches
 from passo.move_file import PIN_KEYS, PIN_SECONDS
@@ -19,7 +22,9 @@ from passo.moves import PIN_CLOCKS_MAX
 from passo.run import AXES_OF_CORES
 from passo.table_values import CLOCK_HZ_MIN
 from passo.values import UNITS
-from passo.web_machine import LIMITS, MOTORS_MOST
+
+MOTORS_MOST = 8
+LIMITS = ("steps_per_mm", "speed", "acceleration", "jump", "jerk")  # of struct limits (passo_web_program.c)
 
 
 def rules() -> dict[str, Any]:
@@ -71,6 +76,21 @@ def rules() -> dict[str, Any]:
         "parts": tuple(PORTS),
         "drives": {name: drive.pins for name, drive in drives().items()},
         "boards": {name: _board(board) for name, board in boards().items()},
+        "gcode": _gcode(),
+    }
+
+
+def _gcode() -> dict[str, Any]:
+    """For sim/passo/page/advice.js; codes in tenths."""
+    return {
+        "axes": AXIS_LETTERS,
+        "not_taken": sorted(refusals.NOT_TAKEN),
+        "unused": refusals.UNUSED,
+        "no_port": refusals.NO_PORT,
+        "letters": refusals.LETTERS,
+        "advice": [(letter, codes.start, codes.stop, *told) for letter, codes, *told in refusals.ADVICE],
+        "otherwise": refusals.OTHERWISE,
+        "expanded": (f"^{FLOW.pattern}", NEEDS.pattern),
     }
 
 

@@ -33,6 +33,7 @@ ADVICE: tuple[tuple[str, range, str, str], ...] = (
         "a user's program, or for 3D printers: leave it out",
     ),
 )
+OTHERWISE = "of no norm that Passo follows", "leave it out, or write what it means"
 LETTERS = {
     "D": "NIST: a tool's diameter, with G41 or G42",
     "E": "RepRap: for 3D printers",
@@ -87,4 +88,4 @@ def _advice(word: Word) -> tuple[str, str]:
     for letter, codes, norm, advice in ADVICE:
         if letter == word.letter and word.code in codes:
             return norm, advice
-    return "of no norm that Passo follows", "leave it out, or write what it means"
+    return OTHERWISE

@@ -3,10 +3,10 @@
 // ranges, drives and boards are in RULES; tests/test_web_machine.py compares both readers.
 "use strict";
 
-let RULES = null;  // of sim/passo/web_machine.py
+let RULES = null;  // of sim/passo/web_rules.py
 
 class MachineReader {
-    // The machine of a text as the page knows it, with the members of web_machine(); raises BadValue.
+    // The machine of a text as the page knows it, with the members of web_machine() (tests/helpers/web_machine.py); raises BadValue.
     static read(text) {
         let data;
         try {
@@ -323,7 +323,7 @@ class MachineReader {
         });
     }
 
-    // The members of web_machine() (sim/passo/web_machine.py).
+    // The members of web_machine() (tests/helpers/web_machine.py).
     described(profile, tolerance, spindle) {
         const { axes, rows, map, parts, mixed } = this, count = rows.length, has = part => Number(parts.includes(part));
         const before = RULES.letters.slice(0, RULES.letters.indexOf(this.letters.at(-1)));
@@ -339,6 +339,8 @@ class MachineReader {
             clock_hz: this.hz,
             letters: this.letters,
             profile,
+            inputs: has("inputs") * (1 + count),
+            power: has("outputs"),
             rows,
             motors: this.motors.map((name, n) => ({ name, per_step: 1 / axes[rows[n].findIndex(Boolean)].steps_per_mm.number })),
         };

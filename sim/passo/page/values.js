@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Values of a machine file, exact and checked as in sim/passo/table_values.py and sim/passo/values.py, with their messages.
-// `RULES` holds what Python says of them: largest numbers, units, keys (sim/passo/web_machine.py).
+// `RULES` holds what Python says of them: largest numbers, units, keys (sim/passo/web_rules.py).
 "use strict";
 
 // A fraction of integers.

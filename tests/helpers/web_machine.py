@@ -1,16 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""A machine for G-code as the page of `make web` knows it."""
+"""A machine for G-code as the page of `make web` has to read it (sim/passo/page/machine_file.js)."""
 
 from typing import Any
 
 import numpy as np
-
 from passo.machine_file import PROFILES, MachineFile
 from passo.path import PathAxis
 from passo.run import AXES_OF_CORES
-
-MOTORS_MOST = 8
-LIMITS = ("steps_per_mm", "speed", "acceleration", "jump", "jerk")
+from passo.web_rules import LIMITS, MOTORS_MOST
 
 
 def web_machine(machine: MachineFile) -> dict[str, Any]:
@@ -22,6 +19,8 @@ def web_machine(machine: MachineFile) -> dict[str, Any]:
         "clock_hz": machine.clock_hz,
         "letters": machine.letters,
         "profile": machine.settings.profile,
+        "inputs": machine.gcode.inputs,
+        "power": int(machine.gcode.power),
         "rows": rows,
         "motors": [
             {"name": name, "per_step": 1 / scale}
