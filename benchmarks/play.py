@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How fast the model plays, against the sources of another commit: the same edges, the ratio of the times.
+"""How fast motions are played, against the sources of another commit: the same edges, the ratio of the times.
 
     python -m benchmarks.play [COMMIT]
 
@@ -13,6 +13,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -34,11 +35,26 @@ class Case:
     text: str
 
 
+@dataclass(frozen=True)
+class Compared:
+    """Seconds of the processor that a case takes."""
+
+    before: float
+    now: float
+
+    @property
+    def ratio(self) -> float:
+        """How many times as fast it is."""
+        return self.before / self.now
+
+
 CASES = (
     Case("rosette", 20_000, "`passo run`, 20,000 lines of 0.5 mm at 25 mm/s"),
     Case("circles", 100, "`passo run`, 100 circles at 50 mm/s"),
     Case("zigzag", 200, "`passo run`, 200 lines of 50 mm at 200 mm/s"),
     Case("paths", 20, "the tests' player, 20 paths of 200 lines"),
+    Case("rtl", 20, "`passo run --engine rtl`, 20 lines of 50 mm at 200 mm/s"),
+    Case("campaign", 300, "`passo campaign`, 300 moves on the model"),
 )
 
 
@@ -68,15 +84,14 @@ def play(root: Path, name: str, lines: int) -> tuple[float, str]:
     return seconds, done.stdout.splitlines()[-1]
 
 
-def main() -> None:
-    """Of the command."""
-    commit, tell = sys.argv[1] if len(sys.argv) > 1 else BEFORE, stages()
-    rows = table(f"Time of the processor, {commit} and now; the edges are the same", "case")
-    for column in ("before [s]", "now [s]", "ratio"):
-        rows.add_column(column, justify="right")
+def compare(
+    cases: Sequence[Case], commit: str = BEFORE, tell: Callable[[str], None] = print
+) -> list[Compared]:
+    """Play cases with the sources of a commit and with these; SystemExit if an edge differs."""
+    found = []
     with tempfile.TemporaryDirectory() as name:
         extract(commit, Path(name))
-        for case in CASES:
+        for case in cases:
             for root in (Path(name), paths.root):
                 play(root, case.name, 1)  # builds
             old, edges = play(Path(name), case.name, case.lines)
@@ -84,7 +99,18 @@ def main() -> None:
             if edges != same:
                 raise SystemExit(f"{case.text}: the edges differ")
             tell(f"{case.text}: {old / new:.1f} times as fast")
-            rows.add_row(case.text, f"{old:.2f}", f"{new:.2f}", f"{old / new:.1f}")
+            found.append(Compared(old, new))
+    return found
+
+
+def main() -> None:
+    """Of the command."""
+    commit = sys.argv[1] if len(sys.argv) > 1 else BEFORE
+    rows = table(f"Time of the processor, {commit} and now; the edges are the same", "case")
+    for column in ("before [s]", "now [s]", "ratio"):
+        rows.add_column(column, justify="right")
+    for case, found in zip(CASES, compare(CASES, commit, stages()), strict=True):
+        rows.add_row(case.text, f"{found.before:.2f}", f"{found.now:.2f}", f"{found.ratio:.1f}")
     console.print(rows)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Plays a case on the model with the sources on PYTHONPATH, and prints a hash of all edges; see play.py.
+"""Plays a case with the sources on PYTHONPATH, and prints a hash of all edges; see play.py.
 
 python benchmarks/play_case.py CASE LINES MACHINE.toml FOLDER
 """
@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from passo import cli, part_command
+from passo import campaign_play, cli, part_command
+from passo.campaign_moves import draw
 from passo.driver import DriverError
 from passo.path import PathAxis, PathSettings
 
@@ -45,7 +46,7 @@ def circles(lines: int) -> str:
     return "\n".join(["G21 G90 G94", "G1 F3000", *rows, "M2", ""])
 
 
-def run(text: str, machine: Path, folder: Path) -> Sequence[Any]:
+def run(text: str, machine: Path, folder: Path, engine: str = "model") -> Sequence[Any]:
     """`passo run`; all that left the pins."""
     played: list[Any] = []
     plays = part_command.play_part
@@ -57,7 +58,7 @@ def run(text: str, machine: Path, folder: Path) -> Sequence[Any]:
     part_command.play_part = kept
     program = folder / "program.nc"
     program.write_text(text)
-    words = ["run", program, "--machine", machine, "--out", folder / "results"]
+    words = ["run", program, "--machine", machine, "--engine", engine, "--out", folder / "results"]
     assert cli.main([str(word) for word in words]) == 0  # as of any commit
     return [*played[0].clocks, *played[0].positions, played[0].motions]
 
@@ -79,12 +80,25 @@ def paths(lines: int, _machine: Path, _folder: Path) -> Sequence[Any]:
     return made
 
 
+def campaign(lines: int, _machine: Path, _folder: Path) -> Sequence[Any]:
+    """Cases of a campaign: refusals, faults and counts of each."""
+    outcomes = (campaign_play.play(draw(1, number), "model") for number in range(lines))
+    return [(own.refused, own.fault, sorted(own.counts.items())) for own in outcomes]
+
+
 def program(text: Callable[[int], str]) -> Callable[[int, Path, Path], Sequence[Any]]:
     """The case of a program of G-code."""
     return lambda lines, machine, folder: run(text(lines), machine, folder)
 
 
-CASES = {"rosette": program(rosette), "zigzag": program(zigzag), "circles": program(circles), "paths": paths}
+CASES = {
+    "rosette": program(rosette),
+    "zigzag": program(zigzag),
+    "circles": program(circles),
+    "paths": paths,
+    "rtl": lambda lines, machine, folder: run(zigzag(lines), machine, folder, "rtl"),
+    "campaign": campaign,
+}
 
 
 def main() -> None:
