@@ -38,7 +38,7 @@ def command(name: str, part: Path, machine: Path, folder: Path) -> tuple[float, 
 
 
 def planned(lines: int, folder: Path) -> tuple[float, float]:
-    """The same of `passo preview` for a rosette of so many lines."""
+    """The same of `passo preview` for a rosette of `lines` lines."""
     (folder / "long.nc").write_text(rosette(lines))
     return command("preview", folder / "long.nc", GCODE / "machine.toml", folder / "out")
 

@@ -38,16 +38,16 @@ def test_the_page_is_written() -> None:
     assert made.partition("<!-- to here")[2] == before.partition("<!-- to here")[2]
 
 
-def test_ratios_are_measured_with_the_same_edges(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The seconds of both; another hash is an error."""
-    seconds = iter(
-        [(0.1, ""), (0.1, ""), (8.0, "a"), (1.0, "a"), (0.1, ""), (0.1, ""), (8.0, "a"), (1.0, "b")]
-    )
+def test_ratios_are_measured_with_the_same_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The seconds of both; other steps are an error, other edges are not."""
+    kinds = (("ab", "ab"), ("ab", "cb"), ("ab", "ac"))
+    seconds = iter([one for old, new in kinds for one in ((0.1, ""), (0.1, ""), (8.0, old), (1.0, new))])
     monkeypatch.setattr(play, "extract", lambda commit, folder: None)
     monkeypatch.setattr(play, "play", lambda root, name, lines: next(seconds))
-    (found,) = play.compare(play.CASES[:1])
-    assert found.ratio == 8
-    with pytest.raises(SystemExit, match="the edges differ"):
+    for edges in (True, False):
+        (found,) = play.compare(play.CASES[:1])
+        assert found.ratio == 8 and found.edges == edges
+    with pytest.raises(SystemExit, match="the steps differ"):
         play.compare(play.CASES[:1])
 
 
