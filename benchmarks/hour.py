@@ -53,7 +53,7 @@ def steps_of_command(folder: Path) -> list[int]:
     if passo([str(word) for word in words]):
         raise Failure("the example part is not played")
     axes = np.loadtxt(folder / "pulses.csv", delimiter=",", skiprows=1, usecols=1, dtype=int)
-    return np.bincount(axes).tolist()
+    return [int(count) for count in np.bincount(axes)]
 
 
 def look(page: Path, picture: Path) -> list[int]:
@@ -71,7 +71,7 @@ def look(page: Path, picture: Path) -> list[int]:
         browser.value("document.getElementById('charts').scrollIntoView()")
         make_folder(picture.parent)
         browser.picture(picture)
-        return browser.value("passo.motion.axes.map(axis => axis.rises.length)")
+        return list(browser.value("passo.motion.axes.map(axis => axis.rises.length)"))
 
 
 def hour(seconds: int, megabytes: int) -> dict[str, Any]:

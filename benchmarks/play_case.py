@@ -76,7 +76,8 @@ def run(text: str, machine: Path, folder: Path, engine: str = "model") -> Made:
 def paths(lines: int, _machine: Path, _folder: Path) -> Made:
     """Paths of the tests: polls at 1800 Hz, and corners of all kinds."""
     settings = PathSettings((PathAxis(), PathAxis(), PathAxis(400, 12, 100)), polls=1800)
-    made, steps = [], []
+    made: list[Any] = []
+    steps: list[np.ndarray] = []
     for bend in range(2, lines + 2):
         course = [
             ((20 * math.sin(k / bend), 20 * math.cos(k / bend), k / 400), 20.0 + k % 50) for k in range(200)
