@@ -7,7 +7,7 @@ from passo.registers import TriggerAction, TriggerSource
 
 from tests.helpers.driver_wire import CLOCK_HZ, Q32, Wire, by_speed, error_of, finish, open_driver, struct
 from tests.test_driver_goto import go
-from tests.test_driver_home import Switch, driver_of, home, homes, machine_of
+from tests.test_driver_home import Switch, driver_of, home, homes, machine_of, run_home
 
 MOST = (1 << 30) - 1  # substeps of a line
 MS = CLOCK_HZ // 1000
@@ -22,6 +22,23 @@ def test_a_home_may_be_as_long_as_a_line(distance: int) -> None:
     assert error_of(driver, "home", homes(home(distance=farther)), 1) == "TOO_MANY_STEPS"
     assert error_of(driver, "home", homes(home(distance=-(1 << 31))), 1) == "TOO_MANY_STEPS"
     assert error_of(driver, "home", homes(home(distance=distance)), 1) == "TOO_LONG"  # at this speed
+
+
+@pytest.mark.parametrize("field", ["back_off", "pull_off"])
+def test_a_way_off_a_switch_may_be_a_quarter_of_a_line(field: str) -> None:
+    """Each of the two; a step more is refused."""
+    driver = driver_of(machine_of())
+    assert error_of(driver, "home", homes(home(**{field: MOST // 4 + 1})), 1) == "TOO_MANY_STEPS"
+    driver.call("home", homes(home(**{field: MOST // 4})), 1)
+
+
+@pytest.mark.parametrize("pull_off", [1, 2])
+def test_a_home_ends_off_its_switch(pull_off: int) -> None:
+    """By as many steps as it was told, a single one too."""
+    driver = driver_of(machine_of(Switch("home", 0, -700)))
+    assert run_home(driver, home(pull_off=pull_off, position=40)) == "OK"
+    assert driver.positions()[0] == 40 + pull_off
+    assert driver.engine.positions[0] == pytest.approx(-700 + pull_off, abs=1)
 
 
 def test_a_trigger_that_stops_the_motion_is_waited_for() -> None:

@@ -297,6 +297,16 @@ def check_input(session: GrblConsole) -> None:
     assert session.fields("MPos")[0] == 0
 
 
+@pytest.mark.parametrize("line", ["G1 X-10", "G0 X-10.00001", "G4 P0.01", "G1 X-10.006\nG1 X-10"])
+def test_what_follows_without_motion_takes_no_level_along(session: GrblConsole, line: str) -> None:
+    """The core never gets a line of no length: what it would have switched switches at rest."""
+    session.send(f"M3 S500 M8\nG1 X-10 F6000\nM5\n{line}\n".encode(), 0.05)
+    assert levels(session) == SPINDLE | FLOOD
+    session.finish()
+    session.run(0.05)
+    assert session.fields("MPos")[0] == -10 and levels(session) == FLOOD
+
+
 def test_the_power(session: GrblConsole) -> None:
     """M67 with the line after it, M68 when the motion before has ended, M5 ends it: shares of the time."""
     drain, kept = session.engine.drain, []

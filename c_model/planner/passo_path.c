@@ -9,7 +9,7 @@
 /* Half the arc of a corner of a radian, by the junction deviation: sharper ones have less. */
 #define SHARP 4u
 /* Of the tolerance: a line that is no farther off goes straight on. */
-#define STRAIGHT 64u
+#define STRAIGHT 4u
 /* A line that takes longer than this part of a second is not merged. */
 #define MERGED_PER_SECOND 128u
 

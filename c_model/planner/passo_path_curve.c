@@ -174,11 +174,18 @@ static uint64_t step_before(const struct passo_path_item *item, unsigned half, u
 uint64_t passo_path_half_before(
     const struct passo_path_item *item, unsigned half, uint64_t end, uint64_t length)
 {
+	const uint64_t longest = passo_path_longest_step(item);
+	uint64_t passed = 0;
+
 	if (!passo_path_is_strong(item))
 		return step_before(item, half, end, length);
-	const uint64_t middle =
-	    passo_path_smaller(step_before(item, half, end, length / 2), passo_path_larger(item->top, end));
-	return step_before(item, half, middle, length - length / 2);
+	for (uint64_t step = passo_path_shortest_step(item); step <= longest && step < length; step *= 2) {
+		const uint64_t square = step_before(item, half, end, step - passed);
+
+		end = passo_path_smaller(square, passo_path_larger(item->top, end));
+		passed = step;
+	}
+	return step_before(item, half, end, length - passed);
 }
 
 uint64_t passo_path_before(const struct passo_path_item *item, uint64_t end, uint64_t length, uint64_t behind)

@@ -231,10 +231,22 @@ static inline unsigned passo_path_halves(const struct passo_path_item *item)
 	return PASSO_PATH_HALVES > 1 && item->curve.halved ? 2 : 1;
 }
 
-/* Whether its halves are passed in two steps each. */
+/* Whether its halves are passed in steps. */
 static inline bool passo_path_is_strong(const struct passo_path_item *item)
 {
 	return passo_path_halves(item) > 1 && item->curve.strong;
+}
+
+/* Steps of a strong half end at a half, a quarter and an eighth of its length, however much of it is left: a ramp
+ * for each of them is enough. */
+static inline uint64_t passo_path_longest_step(const struct passo_path_item *item)
+{
+	return (uint64_t)item->substeps << 30;
+}
+
+static inline uint64_t passo_path_shortest_step(const struct passo_path_item *item)
+{
+	return passo_path_longest_step(item) / 4;
 }
 
 /* The slope that an item had before its end became a curve. */

@@ -32,7 +32,6 @@ static unsigned put(struct passo_path_part *parts, unsigned count, enum passo_pa
 #ifndef PASSO_WITHOUT_ROUNDING
 /* By this part of its square a path may be slower in a valley. */
 #define VALLEY 128u
-#define SP 3
 
 /* Whether the path passes the corner at the start of an item at the highest speed there, from which it need
  * not come down any further. A ramp that comes down to there ends within a tick. */
@@ -109,9 +108,12 @@ static unsigned step_parts(const struct passo_path_item *item, unsigned half, ui
 static unsigned half_parts(const struct passo_path_item *item, unsigned half, uint64_t left, uint64_t square,
     uint64_t top, uint64_t end, struct passo_path_part *parts)
 {
-	if (!passo_path_is_strong(item) || left < 2)
+	if (!passo_path_is_strong(item) || left <= passo_path_shortest_step(item))
 		return step_parts(item, half, left, square, top, end, parts);
-	const uint64_t second = left / 2;
+	uint64_t second = passo_path_longest_step(item);
+
+	while (second >= left)
+		second /= 2;
 	const uint64_t middle =
 	    passo_path_smaller(passo_path_half_before(item, half, end, second), passo_path_larger(top, end));
 	const unsigned count = step_parts(item, half, left - second, square, top, middle, parts);

@@ -45,7 +45,7 @@ struct passo_path_curve {
 	uint8_t helps[PASSO_PATH_HALVES];   /* bit i set: on the way up */
 	uint8_t hinders[PASSO_PATH_HALVES]; /* on the way down */
 	bool halved;                        /* each half has its own */
-	bool strong;                        /* and is passed in two steps, as it leaves less and less */
+	bool strong;                        /* and is passed in steps, as it leaves less and less */
 	uint32_t
 	    fall; /* of a line that is not: change of the square from its start down to 0, by its curve */
 	uint32_t loss; /* UQ0.32: what a square at its end takes of that; no packed number */

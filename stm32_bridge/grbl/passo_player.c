@@ -205,12 +205,15 @@ static enum passo_error take_line(struct passo_player *player, enum passo_player
 	player->waits = error == PASSO_PLAN_PATH_FULL;
 	if (error == PASSO_PLAN_OK) {
 		player->chords++;
-		player->levels = (uint8_t)(output >> LEVELS_AT);
 		if (action->stops)
 			passo_path_dwell(player->feed->path, 0);
 	}
-	if (player->feed->path->added != known)
+	const uint32_t added = player->feed->path->added;
+	if (added != known) { /* a line of no length never gets to the core, nor one that is taken back */
+		player->levels =
+		    added > known ? (uint16_t)(output >> LEVELS_AT) : player->levels | PASSO_PLAYER_UNSURE;
 		passo_player_note(player, known);
+	}
 	if (error == PASSO_PLAN_OK || player->waits)
 		return PASSO_OK;
 	passo_player_drop(player);

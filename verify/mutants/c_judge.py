@@ -33,7 +33,7 @@ TESTS = (
     *("test_driver_home", "test_driver_inputs", "test_driver_outputs", "test_driver_positions"),
     *("test_driver_together", "test_driver_units", "test_driver_goto", "test_driver_homed"),
     *("test_driver_sessions", "test_driver_noise", "test_driver_square", "test_driver_frames"),
-    *("test_driver_waits", "test_endings"),
+    *("test_driver_waits", "test_driver_pass", "test_endings", "test_follow", "test_gcode_lathe"),
 )
 MOST_FAIL = 2  # tests of a file that do not run on copies
 REACHED = BUILD / "reached"
