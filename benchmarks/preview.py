@@ -37,6 +37,19 @@ def command(name: str, part: Path, machine: Path, folder: Path) -> tuple[float, 
     return seconds, summary["path_seconds"]
 
 
+def planned(lines: int, folder: Path) -> tuple[float, float]:
+    """The same of `passo preview` for a rosette of `lines` lines."""
+    (folder / "long.nc").write_text(rosette(lines))
+    return command("preview", folder / "long.nc", GCODE / "machine.toml", folder / "out")
+
+
+def off(part: Path, machine: Path, folder: Path) -> tuple[float, float, float, float]:
+    """Seconds of preview and run, those of the path in the run, and by which share the preview is off."""
+    short, said = command("preview", part, machine, folder / "out")
+    long, played = command("run", part, machine, folder / "out")
+    return short, long, played, abs(said / played - 1)
+
+
 def main() -> None:
     """Of the command."""
     lines, tell = int(sys.argv[1]) if len(sys.argv) > 1 else LINES, stages()
@@ -49,16 +62,13 @@ def main() -> None:
             files.append((folder / f"{case}.nc", GCODE / "machine.toml"))
         command("preview", *files[0], folder / "out")  # builds
         for part, machine in files:
-            short, said = command("preview", part, machine, folder / "out")
-            long, played = command("run", part, machine, folder / "out")
-            off = abs(said / played - 1)
-            tell(f"{part.name}: {long / short:.1f} times as fast as the run, off by {off:.2g}")
-            if off > SHARE:
-                raise SystemExit(f"{part.name}: {said} s are not {played} s")
+            short, long, played, share = off(part, machine, folder)
+            tell(f"{part.name}: {long / short:.1f} times as fast as the run, off by {share:.2g}")
+            if share > SHARE:
+                raise SystemExit(f"{part.name}: the preview is off by {share:.2%}")
             count = str(len(part.read_text().splitlines()))
-            rows.add_row(part.name, count, f"{short:.2f}", f"{long:.2f}", f"{played:.6g}", f"{off:.2g}")
-        (folder / "long.nc").write_text(rosette(lines))
-        seconds, said = command("preview", folder / "long.nc", GCODE / "machine.toml", folder / "out")
+            rows.add_row(part.name, count, f"{short:.2f}", f"{long:.2f}", f"{played:.6g}", f"{share:.2g}")
+        seconds, said = planned(lines, folder)
         rows.add_row("rosette.nc", str(lines), f"{seconds:.2f}", "", f"{said:.6g}", "")
     console.print(rows)
     if lines <= LINES and seconds > SECONDS:

@@ -300,7 +300,7 @@ def test_a_slow_link_excuses_nothing_else(
     file = short_moves(tmp_path / "short.toml", **moves)
     outcome = campaign_play.play_file(file, "model")
     assert outcome == Outcome(counts=outcome.counts)
-    with mock.patch.object(Run, "problems", lambda run: [problem]):
+    with mock.patch.object(Run, "problems", lambda run, steps: [problem]):
         assert campaign_play.play_file(file, "model").fault.kind == kind
 
 

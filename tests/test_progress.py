@@ -45,6 +45,16 @@ def test_a_line_every_ten_seconds(clock: Clock, capsys: pytest.CaptureFixture[st
     assert said.err.splitlines() == [f"part.nc: {line}" for line in lines]
 
 
+def test_a_count_with_an_estimate(clock: Clock) -> None:
+    """As `make verify` and `make report` print it; none at the end."""
+    estimate = console.Estimate(1200)
+    assert estimate.counted(0) == "0 of 1,200"
+    clock.now += 30
+    assert estimate.counted(400) == "400 of 1,200, 1:00 left"
+    clock.now += 60
+    assert estimate.counted(1200) == "1,200 of 1,200"
+
+
 @pytest.mark.parametrize(("total", "left"), [(None, ""), (4.0, ", 2:50 left")])
 def test_simulated_seconds(
     clock: Clock, capsys: pytest.CaptureFixture[str], total: float | None, left: str

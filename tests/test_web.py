@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from passo.cli import main
 from passo.engine import model_engine
+from passo.failure import BadInputError
 from passo.machine_file import read_machine
 from passo.move_file import read_moves
 from passo.part import play_part, read_part
@@ -284,6 +285,18 @@ def test_it_is_accessible(tmp_path: Path, page: str, program: str, dark: bool) -
         assert browser.value(FOUND) == []
 
 
+@pytest.mark.skipif(not AXE.exists(), reason="axe is not installed: npm is missing")
+@pytest.mark.parametrize("dark", [False, True])
+def test_a_wrong_machine_file_is_accessible(tmp_path: Path, page: str, dark: bool) -> None:
+    with Browser(tmp_path / "browser", dark=dark) as browser:
+        browser.open(page, READY)
+        verdict_of(browser, PROGRAMS[0])
+        browser.value("document.getElementById('machine-file').open = true")
+        set_machine(browser, "[axis")
+        browser.value(f"{AXE.read_text()}; 1")
+        assert browser.value(FOUND) == []
+
+
 BLOCKED = 0.1  # seconds
 
 
@@ -300,7 +313,7 @@ def test_a_long_part_does_not_block_the_page() -> None:
 @pytest.mark.parametrize(
     ("program", "said"),
     [
-        ("G1 X1", "error: line 1: the feed is not set"),
+        ("G1 X1", "error: line 1: error:22: the feed is not set"),
         ("G21\nF100\nG1 X1 X2", "error: line 3: "),
         ("G0 X1e9", "error: line 1: "),
         ("G38.2 Z-1 F10", "error: line 1: no probe is fitted"),
@@ -313,6 +326,131 @@ def test_bad_gcode_is_said(browser: Browser, program: str, said: str) -> None:
     if said.startswith("error"):
         assert browser.value("passo") is None  # no charts of an earlier run
         assert browser.value("document.getElementById('charts').textContent") == ""
+
+
+REFUSED = """M117
+G1 X1 X2
+G38.2 Z-1 F1
+G5.1 X1
+U3 (a comment)
+G1 A3 F1
+G33 Z1 K1
+G1 X1; the end
+m 66 P3 L1
+N7 G1 X1 F1 E5
+%
+D5
+G1 X-
+G1 X1 F99 G99
+!
+/G93 G1 X1
+"""
+ANSWER = "document.getElementById('answer').textContent"
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+@pytest.mark.parametrize("program", [REFUSED, "G1 X1\n" * 30])
+def test_all_bad_lines_are_said_as_the_command_says_them(
+    browser: Browser, tmp_path: Path, program: str, end: str
+) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text(program.replace("\n", end), newline="")
+    with pytest.raises(BadInputError) as refused:
+        read_part(path, read_machine(EXAMPLE / "machine.toml"))
+    wanted = (
+        str(refused.value)
+        .replace(f"{path}:", "line ")
+        .replace("fitted: --surface", "fitted: passo run --surface")
+    )
+    first, *_ = verdict_of(browser, path.read_text()).split(" (")
+    assert wanted.startswith(first.removeprefix("error: ")) and len(wanted.splitlines()) > 10
+    assert browser.value(ANSWER) == wanted
+
+
+def test_what_only_the_command_expands(browser: Browser) -> None:
+    assert verdict_of(browser, "#1=5\nG1 X[#1] F100").startswith("error: line 1: ")
+    said = browser.value(ANSWER).splitlines()
+    assert len(said) == 2 and all(line.endswith(": expand the file: passo expand") for line in said)
+
+
+def set_machine(browser: Browser | Firefox, text: str) -> str:
+    """Type a machine file; the verdict of the run that follows."""
+    done = browser.value("web.done")
+    for kind in ("input", "change"):
+        browser.value(
+            f"(area => {{ area.value = {json.dumps(text)}; area.dispatchEvent(new Event('{kind}')); }})"
+            "(document.getElementById('machine-text'))"
+        )
+    browser.wait(f"web.done > {done}")
+    return browser.value(VERDICT)
+
+
+OWN = """clock_hz = 50_000_000
+kinematics = "corexy"
+profile = "cosine"
+[[axis]]
+steps_per_mm = 100
+speed = 100
+acceleration = 500
+[[axis]]
+steps_per_mm = 100
+speed = 100
+acceleration = 500
+[[axis]]
+steps_per_mm = 400
+speed = 10
+acceleration = 100
+"""
+
+
+def test_an_own_machine(opened: Browser | Firefox, tmp_path: Path) -> None:
+    """Its steps are those of the command, its errors too; a link carries it, and its file can be saved."""
+    path, part = tmp_path / "machine.toml", tmp_path / "part.nc"
+    path.write_text(OWN)
+    part.write_text("G21 G90 F3000\nG1 X10 Y-2\nG3 X-3.3 Y0 R8 F600")
+    assert main(["run", str(part), "--machine", str(path), "--out", str(tmp_path / "out")]) == 0
+    verdict_of(opened, part.read_text())
+    assert set_machine(opened, OWN) == "done"
+    assert saved(opened, "csv") == (tmp_path / "out" / "pulses.csv").read_bytes()
+    assert "axes X Y Z; X+Y 100 steps/mm, X-Y 100 steps/mm" in opened.value(
+        "document.getElementById('machine-line').textContent"
+    )
+    opened.value("document.getElementById('link').click()")
+    opened.wait("location.hash && document.getElementById('told').textContent")
+    link = opened.value("location.href")
+    opened.open("about:blank")
+    opened.open(link, READY)
+    assert opened.value("[web.machine.profile, passo.motion.hz]") == ["cosine", 50_000_000]
+    assert saved(opened, "machine-save").decode() == OWN
+    path.write_text(OWN.replace('"cosine"', "cosine"))
+    with pytest.raises(BadInputError) as wrong:
+        read_machine(path)
+    said = str(wrong.value).replace(str(path), "machine.toml")
+    assert said.endswith('profile = "cosine" needs quotes')
+    assert set_machine(opened, path.read_text()) == f"error: {said}"
+    assert opened.value("document.getElementById('machine-told').textContent") == said
+    assert opened.value("[passo, document.getElementById('csv').disabled]") == [None, True]
+    done = opened.value("web.done")
+    opened.value("document.getElementById('machine-example').click()")
+    opened.wait(f"web.done > {done}")
+    assert opened.value(VERDICT) == "done"
+
+
+def test_a_machine_file_is_dropped(opened: Browser | Firefox) -> None:
+    drop = (
+        "(() => {{ const data = new DataTransfer(); data.items.add(new File([{}], 'own.toml'));"
+        "dispatchEvent(new DragEvent('drop', {{dataTransfer: data}})); }})()"
+    )
+    opened.value(drop.format(f"'\\ufeff' + {json.dumps(OWN)}"))
+    opened.wait("web.done > 1")
+    assert opened.value("[web.language, web.machine.letters, passo.motion.hz]") == [
+        "G-code",
+        "XYZ",
+        50_000_000,
+    ]
+    opened.value(drop.format("new Uint8Array([35, 0xff])"))
+    opened.wait("web.done > 2")
+    assert opened.value(VERDICT) == "error: own.toml: not a UTF-8 text file"
 
 
 @pytest.mark.parametrize("line", ["move steps=1", "what"])

@@ -26,7 +26,7 @@ struct limits {
 	double steps_per_mm, speed, acceleration, jump, jerk;
 };
 
-/* The machine as the page gives it, in the order of sim/passo/web_machine.py. */
+/* The machine as the page gives it, in the order of sim/passo/page/machine_file.js. */
 struct web_machine {
 	double clock_hz, axes, junction_deviation, arc_tolerance, profile;
 	double core_axes; /* a frame holds more lines for a core with fewer, which the ramps depend on */
@@ -42,6 +42,7 @@ static struct {
 	char *text;
 	size_t length, at; /* at: of the next line */
 	uint32_t lines;    /* taken */
+	uint32_t refused;
 	uint32_t chords;
 	uint64_t quiet; /* clock of the last chord */
 	uint16_t inputs;
@@ -103,16 +104,20 @@ static const char *next_line(size_t *at, size_t *length)
 	return line;
 }
 
-static void refuse(uint32_t number, const char *why)
+static void refuse(uint32_t number, enum passo_gcode_error error)
 {
 	char text[LINE];
 
-	snprintf(text, sizeof text, "line %u: %s\n", (unsigned)number, why);
+	if (error == PASSO_GCODE_OK)
+		snprintf(text, sizeof text, "%u: no probe is fitted\n", (unsigned)number);
+	else
+		snprintf(text, sizeof text, "%u: error:%u: %s\n", (unsigned)number, (unsigned)error,
+		    passo_gcode_error_text(error));
 	web_write(NULL, text);
 }
 
-/* Writes what is wrong with the lines; returns the number of bad ones. Cuts the text at the end of the
- * program. */
+/* Writes what is wrong with the lines, a line each; returns the number of bad ones. Cuts the text at the end
+ * of the program. */
 static uint32_t check(void)
 {
 	struct passo_gcode *gcode = &web.program.gcode;
@@ -126,10 +131,10 @@ static uint32_t check(void)
 
 		number++;
 		if (error != PASSO_GCODE_OK && bad++ < REFUSED_MOST)
-			refuse(number, passo_gcode_error_text(error));
+			refuse(number, error);
 		while (error == PASSO_GCODE_OK && passo_gcode_next(gcode, &action)) {
 			if (action.kind == PASSO_GCODE_PROBE && bad++ < REFUSED_MOST)
-				refuse(number, "no probe is fitted");
+				refuse(number, PASSO_GCODE_OK);
 			if (action.kind == PASSO_GCODE_END)
 				web.length = at;
 		}
@@ -214,17 +219,34 @@ EXPORT("program") char *web_program(uint32_t length)
 	return web.text;
 }
 
+/* The error of the program's text as a single line of G-code, for the last machine that was begun. */
+EXPORT("tries") uint32_t web_tries(void)
+{
+	struct passo_gcode_line line;
+
+	passo_gcode_open(&web.program.gcode, &web.settings.gcode);
+	passo_gcode_line_read(&line, web.text, web.length);
+	return (uint32_t)passo_gcode_execute(&web.program.gcode, line.text);
+}
+
+/* Lines that are refused; the first ones have been written. */
+EXPORT("refused") uint32_t web_refused(void)
+{
+	return web.refused;
+}
+
 /* Checks the program and opens the machine: web_go() follows, or what is wrong was written. */
 EXPORT("begin") int32_t web_begin(void)
 {
-	web.at = web.lines = web.chords = 0;
+	web.at = web.lines = web.chords = web.refused = 0;
 	web.quiet = 0;
 	if (!web_start((uint32_t)web.machine.core_axes, (uint32_t)web.machine.clock_hz)) {
 		web_write(NULL, "out of memory");
 		return FAILED;
 	}
 	read_settings();
-	if (check() > 0u)
+	web.refused = check();
+	if (web.refused > 0u)
 		return FAILED;
 	const enum passo_error error = open_driver();
 	if (error != PASSO_OK)

@@ -38,10 +38,17 @@ class Case:
 
     def write(self, folder: Path) -> Path:
         """Write the move file and its table; return its path."""
-        if self.table:
-            write_table(self.table, folder / f"{self.name}.csv")
+        self.write_table(folder)
         path = folder / f"{self.name}.toml"
         write_text(path, to_toml(self.data))
+        return path
+
+    def write_table(self, folder: Path) -> Path | None:
+        """Write its table, if it names one; return its path."""
+        if not self.table:
+            return None
+        path = folder / f"{self.name}.csv"
+        write_table(self.table, path)
         return path
 
 

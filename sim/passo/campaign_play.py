@@ -10,14 +10,14 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
-from passo.campaign_moves import Case, draw
+from passo.campaign_moves import Case, draw, to_toml
 from passo.campaign_refusals import acceptance_fault, outruns_the_link, refusal_fault
 from passo.engine import DifferenceError
-from passo.move_file import read_channels
+from passo.move_file import parse_channels
 from passo.moves import Channels, MoveFileError
 from passo.plan import PlanError, plan_channels
 from passo.pulse_judge import Fault, faults
-from passo.run import Run, execute_channels, open_engine, parameters_of
+from passo.run import Run, Steps, execute_channels, open_engine, parameters_of
 
 ENGINES = {"model": "model", "rtl": "both"}  # of a campaign; as `passo run` calls them
 CLOCKS_MAX = 1 << 25  # longer than any move that is drawn
@@ -37,17 +37,18 @@ Player = Callable[[Case, str], Outcome]
 
 
 def play(case: Case, engine: str) -> Outcome:
-    """Write the case to a file, read, plan and play it; an exception is a fault, too."""
-    folder = Path(_folder().name)
+    """Read the text of the case as that of a file, plan and play it; an exception is a fault, too."""
+    path = Path(_folder().name) / f"{case.name}.toml"
+    table = case.write_table(path.parent)  # the text stays in memory: a file takes longer than to read it
     try:
-        return play_file(case.write(folder), engine)
+        return play_text(to_toml(case.data), path, engine)
     except DifferenceError as error:
         return Outcome(fault=Fault("difference", str(error)))
     except Exception as error:
         return Outcome(fault=Fault(type(error).__name__, str(error).partition("\n")[0]))
     finally:
-        for file in folder.iterdir():
-            file.unlink()
+        if table:
+            table.unlink()
 
 
 @cache
@@ -58,9 +59,14 @@ def _folder() -> tempfile.TemporaryDirectory[str]:
 
 def play_file(path: Path, engine: str) -> Outcome:
     """The same for a file, but exceptions of the engine are raised."""
+    return play_text(path.read_text(encoding="utf-8"), path, engine)
+
+
+def play_text(text: str, path: Path, engine: str) -> Outcome:
+    """The same for the text of a file."""
     channels = None
     try:
-        channels = read_channels(path)
+        channels = parse_channels(text, path)
         parameters = parameters_of(channels)
         plans = plan_channels(channels, parameters)
     except MoveFileError as error:
@@ -73,12 +79,13 @@ def play_file(path: Path, engine: str) -> Outcome:
         return Outcome(fault=Fault("length", f"the motion would take {clocks} clocks"))
     with open_engine(ENGINES[engine], parameters, channels.clock_hz) as core:
         runs = execute_channels(channels, plans, core)
-    found = [fault for run in runs for fault in faults(run)]
+    steps = [run.all_steps() for run in runs]
+    found = [fault for run, own in zip(runs, steps, strict=True) for fault in faults(run, own)]
     if found and _lacked_ramps(found[0], runs) and outruns_the_link(plans, parameters):
         return Outcome(f"LINK_TOO_SLOW: {found[0].text}")
     if channels.together and len({run.start for run in runs}) > 1:
         found.append(Fault("together", f"the channels started at clocks {[run.start for run in runs]}"))
-    return Outcome(counts=_counts(channels, runs), fault=found[0] if found else None)
+    return Outcome(counts=_counts(channels, runs, steps), fault=found[0] if found else None)
 
 
 def _lacked_ramps(fault: Fault, runs: list[Run]) -> bool:
@@ -87,9 +94,9 @@ def _lacked_ramps(fault: Fault, runs: list[Run]) -> bool:
     return "RAMP_UNDERRUN" in fault.text or (fault.kind == "clocks" and waited)
 
 
-def _counts(channels: Channels, runs: list[Run]) -> Counter[str]:
+def _counts(channels: Channels, runs: list[Run], steps: list[list[Steps]]) -> Counter[str]:
     return Counter(
-        steps=sum(len(run.steps(axis)[0]) for run in runs for axis in range(run.file.axes)),
+        steps=sum(len(clocks) for own in steps for clocks, _ in own),
         clocks=max(run.late + run.total_clocks for run in runs),
         edges=runs[0].matched_edges or 0,
         parts=sum(len(file.moves) for file in channels.files),

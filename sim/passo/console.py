@@ -47,6 +47,11 @@ class Estimate:
         minutes, seconds = divmod(round((time.monotonic() - self.began) * (self.total / done - 1)), 60)
         return f"{minutes}:{seconds:02} left"
 
+    def counted(self, done: int) -> str:
+        """Such as `3 of 10, 2:05 left`."""
+        left = self.left(done) if done < self.total else ""
+        return f"{done:,} of {self.total:,}{left and ', '}{left}"
+
     def is_due(self) -> bool:
         """Whether nothing was said for `EVERY` seconds; if so, it counts as said."""
         due = time.monotonic() - self._said >= EVERY

@@ -77,6 +77,7 @@ class Driver:
             self.options.channels, self.options.axes = parameters.channels, parameters.axes
             self.options.tick_log2 = parameters.tick_log2
         self._source: Source | None = None
+        self._config: tuple[Any, Any] | None = None  # of the last configured axis, and its struct
         if beside:
             self._check("open_channel", self.lib.passo_open_channel(self.c, self.host, self.options))
         else:
@@ -106,15 +107,17 @@ class Driver:
 
     def configure_axis(self, axis: int, pins: PinTiming, **fields: Any) -> None:
         """Set the pins of an axis and enable its drive; `fields` are members of struct passo_axis_config."""
-        config = {
-            "step_high_ns": pins.step_high,
-            "step_low_ns": pins.step_low,
-            "dir_setup_ns": pins.dir_setup,
-            "dir_hold_ns": pins.dir_hold,
-            "in_clocks": True,
-            **fields,
-        }
-        self.call("configure_axis", axis, ffi().new("struct passo_axis_config *", config))
+        if self._config is None or self._config[0] != (pins, fields):  # mostly all axes have one
+            config = {
+                "step_high_ns": pins.step_high,
+                "step_low_ns": pins.step_low,
+                "dir_setup_ns": pins.dir_setup,
+                "dir_hold_ns": pins.dir_hold,
+                "in_clocks": True,
+                **fields,
+            }
+            self._config = (pins, fields), ffi().new("struct passo_axis_config *", config)
+        self.call("configure_axis", axis, self._config[1])
         self.call("enable", axis, True)
 
     def stream(self, source: Source) -> None:

@@ -2,7 +2,6 @@
 """The engines that execute the core: the C model and the Verilated RTL; both in lockstep: pair_engine.py."""
 
 from collections.abc import Sequence
-from dataclasses import asdict
 from functools import cache
 from pathlib import Path
 from typing import Any, Self
@@ -83,7 +82,7 @@ class Engine(Closed):
         self.clock_hz = clock_hz
         self._c = load(library)
         config = ffi().new("struct passo_engine_config *")
-        config.core = asdict(parameters)
+        config.core = vars(parameters)
         config.clock_hz, config.spi_half_period, config.every_clock = clock_hz, spi_half_period, every_clock
         self._events = _untouched()("struct passo_pin_event[]", EVENTS_PER_DRAIN)
         self._engine = self._c.passo_engine_create(config)

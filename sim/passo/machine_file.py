@@ -217,6 +217,8 @@ def read_machine(path: Path) -> MachineFile:
         data = tomllib.loads(text, parse_float=Written)
     except OSError as error:
         raise BadInputError(f"{path}: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise BadInputError(f"{path}: not a UTF-8 text file") from None
     except tomllib.TOMLDecodeError as error:
         raise BadInputError(f"{path}: {toml_error(text, error)}") from None
     except (ValueError, RecursionError, ArithmeticError) as error:

@@ -51,7 +51,7 @@ def read_moves(path: Path) -> MoveFile:
 
 def parse_moves(text: str, path: Path) -> MoveFile:
     """The same of a text, which is or could be in a file."""
-    return _alone(_parse(text, path))
+    return _alone(parse_channels(text, path))
 
 
 def _alone(channels: Channels) -> MoveFile:
@@ -73,10 +73,11 @@ def read_channels(path: Path) -> Channels:
         raise MoveFileError(f"{path}: {error.strerror}") from None
     except UnicodeDecodeError:
         raise MoveFileError(f"{path}: not a UTF-8 text file") from None
-    return _parse(text, path)
+    return parse_channels(text, path)
 
 
-def _parse(text: str, path: Path) -> Channels:
+def parse_channels(text: str, path: Path) -> Channels:
+    """The same of a text, which is or could be in a file; tables that it names are beside that."""
     try:
         data = tomllib.loads(text, parse_float=Written)
     except RecursionError:

@@ -11,7 +11,7 @@ import numpy as np
 
 from passo.curve import shapes_of
 from passo.plan import Q48, Plan
-from passo.run import Run
+from passo.run import Run, Steps
 from passo.shape import POINTS
 
 EARLY = 0.25  # substeps: the rounding to clocks is centered at full speed
@@ -25,7 +25,6 @@ FAR = 1e9  # clocks
 GRID = np.arange(POINTS + 1) / POINTS  # the points of a table
 
 Curve = tuple[np.ndarray, np.ndarray]
-Steps = tuple[np.ndarray, np.ndarray]  # clocks and directions, as Run.steps() has them
 
 
 @dataclass(frozen=True)
@@ -40,34 +39,58 @@ class Fault:
 KINDS = {"stopped": "stop", "missing": "drain", "made": "count", "is at": "position", "took": "clocks"}
 
 
-def faults(run: Run) -> list[Fault]:
-    """All broken promises of a motion; those of the pulses only if their number is right."""
+def faults(run: Run, steps: list[Steps] | None = None) -> list[Fault]:
+    """All broken promises of a motion; those of the pulses only if their number is right.
+
+    `steps` are those of run.all_steps(), if they are known.
+    """
+    steps = run.all_steps() if steps is None else steps
     found = [
         Fault(next((kind for word, kind in KINDS.items() if word in text), "problem"), text)
-        for text in run.problems()
+        for text in run.problems(steps)
     ]
-    return found or list(_pulse_faults(run))
+    return found or list(_pulse_faults(run, steps))
 
 
-def _pulse_faults(run: Run) -> Iterator[Fault]:
-    places = [_Place.of(plan) for plan in run.plans]
-    for axis in range(run.file.axes):
-        steps = run.steps(axis)
-        yield from timing_faults(run, axis, steps)
-        yield from curve_faults(run, axis, steps, places)
+def _pulse_faults(run: Run, steps: list[Steps]) -> Iterator[Fault]:
+    places, pins = [_Place.of(plan) for plan in run.plans], _Pins.of(run)
+    for axis, own in enumerate(steps):
+        yield from timing_faults(run, axis, own, pins)
+        yield from curve_faults(run, axis, own, places)
+
+
+@dataclass(frozen=True)
+class _Pins:
+    """Clocks since the start, and which axes change STEP and DIR there, a bit each."""
+
+    clock: np.ndarray
+    step: np.ndarray
+    dir: np.ndarray
+
+    @classmethod
+    def of(cls, run: Run) -> "_Pins":
+        """All pins are low at first."""
+        found = []
+        for name in ("step", "dir"):
+            changes = run.pins[name].copy()
+            changes[1:] ^= run.pins[name][:-1]
+            found.append(changes)
+        return cls(run.pins["clock"].astype(np.int64) - run.start, *found)
+
+    def changes(self, pin: str, axis: int) -> np.ndarray:
+        """Clocks at which a pin of an axis changes."""
+        return self.clock[np.flatnonzero(getattr(self, pin) & (1 << axis))]
 
 
 def _first(bad: np.ndarray) -> int | None:
     return int(np.argmax(bad)) if bad.any() else None
 
 
-def timing_faults(run: Run, axis: int, steps: Steps) -> Iterator[Fault]:
+def timing_faults(run: Run, axis: int, steps: Steps, seen: _Pins) -> Iterator[Fault]:
     """STEP high and low, DIR setup, hold and reversals, the direction of each pulse; first faults."""
-    pins, clock = run.file.pins, run.pins["clock"].astype(np.int64) - run.start
-    step, dir_ = (run.pins[pin] >> axis & 1 for pin in ("step", "dir"))
-    changes = clock[np.flatnonzero(step ^ np.concatenate([[0], step[:-1]]))]  # both are low at first
+    pins, changes = run.file.pins, seen.changes("step", axis)
     rises, falls = changes[::2], changes[1::2]
-    turns = clock[np.flatnonzero(dir_ ^ np.concatenate([[0], dir_[:-1]]))]
+    turns = seen.changes("dir", axis)
     if len(falls) != len(rises):
         yield Fault("high", f"axis {axis}: the last pulse does not end")
         return
@@ -88,8 +111,13 @@ def timing_faults(run: Run, axis: int, steps: Steps) -> Iterator[Fault]:
     wanted = _directions(run, axis)
     if (k := _first(wanted != steps[1])) is not None:
         yield Fault("direction", f"axis {axis}, step {k}: its direction is {-wanted[k]}")
-    made = np.diff(before, prepend=0, append=len(turns))  # turns of DIR before each step, and after the last
-    needed = np.diff(wanted, prepend=1, append=wanted[-1:] if len(wanted) else 1) != 0
+    # turns of DIR before each step, and after the last one
+    made = np.concatenate([before, [len(turns)]])
+    made[1:] -= before
+    needed = np.zeros(len(wanted) + 1, bool)
+    if len(wanted):
+        needed[0] = wanted[0] < 0
+        needed[1:-1] = wanted[1:] != wanted[:-1]
     if (k := _first(made != needed)) is not None:
         yield Fault("turns", f"axis {axis}: DIR turns {made[k]} times before step {k}, {needed[k]:d} needed")
 
@@ -105,10 +133,11 @@ def expected(plan: Plan) -> Curve:
     Before and after the plan it goes on at its highest velocity, so that a step there is early or late.
     """
     velocities, velocity = [np.empty(0)], 0.0
-    shapes = shapes_of(plan)
+    shapes: dict[int, np.ndarray] = {}
     for ramp in plan.ramps:
         end, u = ramp.velocity_end / Q48, (np.arange(ramp.ticks) + 0.5) / max(ramp.ticks, 1)
-        points = shapes[ramp.shape](GRID)[0]
+        if (points := shapes.get(ramp.shape)) is None:
+            points = shapes[ramp.shape] = shapes_of(plan)[ramp.shape](GRID)[0]
         s = np.interp(1 - u if ramp.mirror else u, GRID, points)
         velocities.append(velocity + (end - velocity) * (1 - s if ramp.mirror else s))
         velocity = end
@@ -151,7 +180,9 @@ def curve_faults(run: Run, axis: int, steps: Steps, places: list[_Place]) -> Ite
     pins = run.file.pins
     turned = np.concatenate([[True], directions[1:] != directions[:-1]])
     turn = pins.step_low + pins.dir_hold + pins.dir_setup
-    gaps = np.diff(clocks, prepend=-int(FAR))
+    gaps = clocks.copy()
+    gaps[1:] -= clocks[:-1]
+    gaps[:1] += int(FAR)
     waited = gaps <= pins.step_high + pins.step_low + turned * (pins.dir_hold + pins.dir_setup + LATENCY)
     first = begin = 0
     for plan, place in zip(run.plans, places, strict=True):

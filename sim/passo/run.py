@@ -19,6 +19,7 @@ from passo.pair_engine import PairEngine
 from passo.plan import Plan, table_of
 from passo.registers import Cause, State
 
+Steps = tuple[np.ndarray, np.ndarray]  # of an axis: clocks since the start of the motion, and directions
 CHUNK = 1_000_000  # clocks between two reports of progress
 AXES_OF_CORES = (4, 8)
 
@@ -68,19 +69,33 @@ class Run:
         """Clocks from the start of the first channel to that of this one."""
         return 0 if self.since is None else self.start - self.since
 
-    def steps(self, axis: int) -> tuple[np.ndarray, np.ndarray]:
+    def steps(self, axis: int) -> Steps:
         """Clocks since the start of the motion and directions (1, -1) of all steps of an axis."""
         moves = moves_of(self.pins, axis)
         made = np.flatnonzero(moves)
         return self.pins["clock"][made].astype(np.int64) - self.start, moves[made]
+
+    def all_steps(self) -> list[Steps]:
+        """The same of all axes, in one pass over the pins."""
+        clock = self.pins["clock"].astype(np.int64) - self.start
+        step, back = self.pins["step"].copy(), self.pins["dir"]
+        step[1:] &= ~self.pins["step"][:-1]
+        found = []
+        for axis in range(self.file.axes):
+            made = np.flatnonzero(step & (1 << axis))
+            found.append((clock[made], 1 - 2 * (back[made] >> axis & 1).astype(np.int8)))
+        return found
 
     def commanded(self, axis: int) -> tuple[int, int]:
         """Commanded steps of an axis over all moves: their sum, and the sum of their magnitudes."""
         steps = [move.steps[axis] for move in self.file.moves]
         return sum(steps), sum(map(abs, steps))
 
-    def problems(self) -> list[str]:
-        """Deviations from the plan, one sentence each; empty if the motion was exact."""
+    def problems(self, steps: list[Steps] | None = None) -> list[str]:
+        """Deviations from the plan, one sentence each; empty if the motion was exact.
+
+        `steps` are those of all_steps(), if they are known.
+        """
         if self.canceled:
             return [f"canceled after {self.moved_clocks} clocks"]
         found = []
@@ -88,9 +103,8 @@ class Run:
             found.append(f"the core stopped: {self.state.cause.name}: {self.state.cause.description}")
         if self.state.drained:
             found.append(f"{self.state.drained} substeps were missing at the end of the profile")
-        for axis in range(self.file.axes):
+        for axis, (clocks, directions) in enumerate(self.all_steps() if steps is None else steps):
             expected, pulses = self.commanded(axis)
-            clocks, directions = self.steps(axis)
             if len(clocks) != pulses or int(directions.sum(dtype=np.int64)) != expected:
                 found.append(f"axis {axis} made {len(clocks)} steps of {pulses}")
             if self.positions[axis] != (expected + 2**31) % 2**32 - 2**31:

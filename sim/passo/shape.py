@@ -39,16 +39,21 @@ class Facts:
 
 
 PARTS = 16  # of an interval between two points, for its area
+PLACES = tuple(k / (POINTS * PARTS) for k in range(POINTS * PARTS + 1))
 
 
 def sample(shape: Callable[[float], float]) -> Points:
-    """Sample a function to a checked table, scaled to start at 0 and end at 1. Raises ShapeError.
+    """Sample a function to a checked table, scaled to start at 0 and end at 1. Raises ShapeError."""
+    return from_values([shape(u) for u in PLACES])
+
+
+def from_values(values: Sequence[float]) -> Points:
+    """The same of its values at PLACES.
 
     What a ramp travels is the area below the straight lines between its points. So the points are not
     rounded each by itself: each is the integer that keeps the area from the start to it closest to that
     of the function.
     """
-    values = [shape(k / (POINTS * PARTS)) for k in range(POINTS * PARTS + 1)]
     first, last = values[0], values[-1]
     if not last > first:
         raise ShapeError("a shape must rise: s(1) must be above s(0)")
@@ -94,9 +99,9 @@ def check(points: Sequence[int]) -> Facts:
     """Check that a table is a shape; raises ShapeError."""
     if len(points) != POINTS:
         raise ShapeError(f"a table must have {POINTS} points, not {len(points)}")
-    for k, point in enumerate(points):
-        if not 0 <= point < ONE:
-            raise ShapeError(f"point {k} is {point}; must be 0 to {ONE - 1}")
+    if not (min(points) >= 0 and max(points) < ONE):
+        k, point = next((k, point) for k, point in enumerate(points) if not 0 <= point < ONE)
+        raise ShapeError(f"point {k} is {point}; must be 0 to {ONE - 1}")
     if points[0]:
         raise ShapeError(f"a shape must start at 0, not at {points[0]}")
     whole = [*points, ONE]

@@ -15,8 +15,10 @@ import math
 from collections.abc import Callable
 from fractions import Fraction
 
+import numpy as np
+
 from passo.form_table import Points, Shaper
-from passo.shape import ShapeError, sample
+from passo.shape import PLACES, ShapeError, from_values
 
 DAMPING_MAX = Fraction(1, 2)
 TOLERATED = 0.05  # of the vibration, by ei
@@ -65,11 +67,8 @@ def shaped(shaper: Shaper, ramp_time: Fraction) -> Points:
             f"the ramp has {ramp * 1e3:.3f} ms"
         )
 
-    def speed(u: float) -> float:
-        total, time = 0.0, u * ramp
-        for delay, weight in delayed:
-            if time > delay:  # the copy has begun
-                total += weight * min((time - delay) / straight, 1)
-        return total
-
-    return sample(speed)
+    time = np.array(PLACES) * ramp
+    speed = np.zeros_like(time)
+    for delay, weight in delayed:
+        speed += weight * np.clip((time - delay) / straight, 0, 1)  # 0: the copy has not begun
+    return from_values(speed.tolist())

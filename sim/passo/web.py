@@ -14,11 +14,10 @@ from passo.build import engine_sources
 from passo.cache import cached
 from passo.compiler import call, headers, includes, sources
 from passo.failure import BuildError
-from passo.machine_file import read_machine
 from passo.output import make_folder, write_text
 from passo.report_page import FOLDER, SHELL, page, source_of
 from passo.toolchain import paths, short
-from passo.web_machine import web_machine
+from passo.web_rules import rules
 
 FOLDERS = (paths.driver, paths.console, paths.protocol, paths.planner, paths.gcode, paths.core)
 # Of the folder: the rest is for a sender.
@@ -38,8 +37,9 @@ OWN = (
     "passo_web_console.c",
     "passo_web_program.c",
 )
-WEB = ("runner.js", "share.js", "save.js", "web.js")
-WORKER = ("bytes.js", "motion.js", "worker.js")
+MACHINE = ("toml.js", "values.js", "machine_file.js")  # reads machine files
+WEB = ("runner.js", "share.js", "save.js", *MACHINE, "web.js")
+WORKER = ("bytes.js", "motion.js", "advice.js", "worker.js")
 EXAMPLE = paths.root / "examples" / "gcode"
 # The warnings are those of GCC, which compiles the same sources elsewhere: Clang has others.
 FLAGS = ("--target=wasm32-wasi", "-mexec-model=reactor", "-std=c11", "-O2", "-s")
@@ -61,10 +61,9 @@ def module() -> Path:
 
 
 def facts() -> str:
-    """The machine for G-code and a program for it, as JSON."""
-    machine = read_machine(EXAMPLE / "machine.toml")
-    program = (EXAMPLE / "part.nc").read_text(encoding="ascii")
-    return _json(web_machine(machine) | {"program": program})
+    """The file of a machine for G-code, a program for it, and the rules of such files, as JSON."""
+    machine, program = ((EXAMPLE / name).read_text(encoding="utf-8") for name in ("machine.toml", "part.nc"))
+    return _json({"machine": machine, "program": program, "rules": rules()})
 
 
 def build(folder: Path) -> Path:

@@ -11,7 +11,7 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from typing import Any
 
-from passo.console import console, stages, table
+from passo.console import Estimate, console, stages, table
 from passo.output import write_json
 from passo.toolchain import paths
 
@@ -45,8 +45,9 @@ def measure(names: Sequence[str]) -> dict[str, Any]:
         design(device, axes, part) for device in devices for axes in (FEW, MANY) for part in ("", *PORTS)
     ]
     with ThreadPoolExecutor(workers()) as pool:
+        estimate = Estimate(len(wanted))
         for count, made in enumerate(pool.map(_synthesized, wanted), 1):
-            tell(f"synthesis {count} of {len(wanted)}: {made.name}")
+            tell(f"synthesis {estimate.counted(count)}: {made.name}")
         clocks = _clocks(pool, tell) if CLOCK_DEVICE in names else []
     sizes = [row(device, part) for device in devices for part in PORTS]
     return {"axes": [FEW, MANY], "seeds": list(SEEDS), "sizes": sizes, "clocks": clocks}

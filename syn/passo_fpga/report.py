@@ -18,7 +18,7 @@ from itertools import product
 from threading import Lock
 from typing import Any
 
-from passo.console import console, stages
+from passo.console import Estimate, console, stages
 from passo.output import write_json
 from passo.toolchain import paths
 
@@ -180,15 +180,15 @@ def _seeds(key: Key) -> Sequence[int]:
 
 
 def _counter(total: int) -> Callable[..., str]:
-    """A function that adds to a count and returns it as text."""
-    done = 0
+    """A function that adds to a count and returns it as text, with an estimate of what is left."""
+    done, estimate = 0, Estimate(total)
     lock = Lock()
 
     def count(more: int = 1) -> str:
         nonlocal done
         with lock:
             done += more
-            return f"{done} of {total}"
+            return estimate.counted(done)
 
     return count
 

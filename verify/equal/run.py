@@ -16,7 +16,7 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import asdict, dataclass
 from multiprocessing import get_context
 
-from passo.console import console, table
+from passo.console import Estimate, console, table
 from passo.failure import Failure
 from passo.output import make_folder, write_json
 from passo.toolchain import paths
@@ -75,12 +75,15 @@ def run_all(chosen: list[Coupling], jobs: int) -> list[Result]:
     results: list[Result] = []
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
         work = [pool.submit(of, coupling.name) for coupling in chosen for of in (prove_module, see_fault)]
+        estimate = Estimate(len(work))
         for done in as_completed(work):
             result = done.result()
             results.append(result)
             word = "ok  " if result.good else "FAIL"
             line = f"{len(results):3}/{len(work)} {word} {result.module:12} {result.seconds:6.1f} s  "
             line += f"{result.what}: {result.says}"
+            if len(results) < len(work):
+                line += f"  ({estimate.left(len(results))})"
             console.print(line, highlight=False, markup=False, soft_wrap=True)
     return results
 

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from passo.build import rtl_library
-from passo.console import console, table
+from passo.console import Estimate, console, table
 from passo.failure import Failure
 from passo.output import write_json
 from passo.toolchain import environment, paths
@@ -154,6 +154,7 @@ def check(seed: int, names: Collection[str] = ()) -> dict[str, str]:
         if at := "".join(pool.map(lambda player: player.first_seen(0), players)):
             raise Failure(f"RTL and model differ without an inversion: {at}")
         running = {pool.submit(_first_seen, wire.number, players): wire for wire in chosen}
+        estimate = Estimate(len(chosen))
         for count, done in enumerate(as_completed(running), 1):
             name = running[done].name
             seen[name] = done.result()
@@ -162,7 +163,7 @@ def check(seed: int, names: Collection[str] = ()) -> dict[str, str]:
             if count % 20 == 0 or count == len(chosen):
                 none = sum(not at for at in seen.values())
                 console.print(
-                    f"{count} of {len(chosen)} connections inverted, {none} not detected", highlight=False
+                    f"connections inverted: {estimate.counted(count)}; {none} not detected", highlight=False
                 )
     return {wire.name: seen[wire.name] for wire in chosen}
 

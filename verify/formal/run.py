@@ -21,7 +21,7 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
 
-from passo.console import console, table
+from passo.console import Estimate, console, table
 from passo.output import write_text
 from passo.toolchain import environment, paths
 
@@ -311,12 +311,15 @@ def main() -> None:
         return
 
     results: list[Result] = []
+    estimate = Estimate(2 * len(chosen))
 
     def show(result: Result) -> None:
         results.append(result)
         word = "ok  " if result.good else "FAIL"
         line = f"{len(results):3}/{2 * len(chosen)} {word} {result.proof:20} {result.what:6} "
         line += f"{result.seconds:6.1f} s  {result.says}"
+        if len(results) < 2 * len(chosen):
+            line += f"  ({estimate.left(len(results))})"
         console.print(line, highlight=False, markup=False, soft_wrap=True)
 
     run_all(chosen, arguments.jobs, show)

@@ -12,6 +12,7 @@ from tempfile import TemporaryDirectory
 
 from passo.build import Parameters, rtl_library
 from passo.compiler import call, includes
+from passo.console import Estimate
 from passo.console import console as terminal
 from passo.toolchain import paths
 from rich.console import Console
@@ -49,6 +50,7 @@ Work = Callable[[], tuple[Counter[str], list[Failure]]]
 def _all(part: Part, wanted: int, work: Iterable[Work], jobs: int) -> Part:
     """Run the work on `jobs` processor cores and print the progress."""
     began = last = time.monotonic()
+    estimate = Estimate(wanted)
     waiting: Iterator[Work] = iter(work)
     with ThreadPoolExecutor(jobs) as pool:
         running = {pool.submit(task) for _, task in zip(range(2 * jobs), waiting, strict=False)}
@@ -64,7 +66,7 @@ def _all(part: Part, wanted: int, work: Iterable[Work], jobs: int) -> Part:
             if now - last > 10 or not running:
                 last = now
                 console.print(
-                    f"{part.name}: {part.counts['histories']:,} of {wanted:,} histories, "
+                    f"{part.name}: histories: {estimate.counted(part.counts['histories'])}, "
                     f"{len(part.failures)} failed, {now - began:.0f} s",
                     highlight=False,
                 )

@@ -36,6 +36,7 @@ ADVICE: tuple[tuple[str, range, int, str, str], ...] = (
     ),
 )
 LETTER_ERRORS = {"D": 36, "E": 36, "U": 20, "V": 20, "W": 20}
+OTHERWISE = "of no norm that Passo follows", "leave it out, or write what it means"
 LETTERS = {
     "D": "NIST: a tool's diameter, with G41 or G42",
     "E": "RepRap: for 3D printers",
@@ -90,4 +91,4 @@ def _advice(word: Word) -> tuple[str, str]:
     for letter, codes, _, norm, advice in ADVICE:
         if letter == word.letter and word.code in codes:
             return norm, advice
-    return "of no norm that Passo follows", "leave it out, or write what it means"
+    return OTHERWISE

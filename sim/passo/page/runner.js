@@ -3,14 +3,14 @@
 "use strict";
 
 class Runner {
-    // `source`: text of the worker; `module`: bytes of the WebAssembly; `progress({share, seconds})` hears of a job.
-    static async open(source, module, progress) {
+    // `source`: text of the worker; `module`: bytes of the WebAssembly; `rules`: of G-code; `progress({share, seconds})` hears of a job.
+    static async open(source, module, rules, progress) {
         const runner = new Runner();
         runner.worker = new Worker(URL.createObjectURL(new Blob([source], { type: "text/javascript" })));
         runner.worker.onmessage = ({ data }) => (data.kind === "progress" ? progress(data) : runner.settle(data));
         runner.worker.onerror = event => runner.settle({ kind: "failure", text: event.message });
         runner.last = Promise.resolve();
-        await runner.ask({ kind: "load", module }, [module.buffer]);
+        await runner.ask({ kind: "load", module, rules }, [module.buffer]);
         return runner;
     }
 

@@ -22,6 +22,15 @@ function machineText({ letters, clock_hz, motors, numbers }) {
     return `Machine: axes ${[...letters].join(" ")}; ${limits}; junction deviation ${plain(numbers[2])} mm; ${clock_hz / 1e6} MHz.`;
 }
 
+// A machine file with other bytes would be another one.
+async function textOf(file) {
+    try {
+        return new TextDecoder("utf-8", { fatal: true }).decode(await file.arrayBuffer());
+    } catch {
+        throw new BadValue(`${file.name}: not a UTF-8 text file`);
+    }
+}
+
 function showVerdict(text, kind) {
     const verdict = by("verdict");
     verdict.textContent = text;
@@ -29,8 +38,9 @@ function showVerdict(text, kind) {
 }
 
 class Form {
-    constructor(runner, machine) {
-        Object.assign(this, { runner, machine, whole: null, done: 0, running: false });
+    // `example`: a program in G-code and the file of its machine.
+    constructor(runner, example) {
+        Object.assign(this, { runner, example, machine: null, whole: null, done: 0, running: false });
         for (const hz of CLOCKS) element(by("clock"), "option", "", `${hz / 1e6} MHz`).value = hz;
         for (const name of [...Object.keys(EXAMPLES), "a part in G-code"]) element(by("example"), "option", "", name);
         by("language").onchange = () => this.chosen();
@@ -39,7 +49,7 @@ class Form {
         by("cancel").onclick = () => runner.cancel();
         by("example").onchange = ({ target }) => {
             const text = EXAMPLES[target.value];
-            if (target.value) this.put(text ?? machine.program, text ? CONSOLE : GCODE);
+            if (target.value) this.put(text ?? example.program, text ? CONSOLE : GCODE);
             target.value = "";
             return this.run();
         };
@@ -48,7 +58,14 @@ class Form {
             if (target.files.length) this.open(target.files[0]);
             target.value = "";
         };
-        by("machine-line").textContent = machineText(machine);
+        by("machine-text").oninput = () => this.readMachine();
+        by("machine-text").onchange = () => this.run();
+        by("machine-example").onclick = () => {
+            this.putMachine(example.machine);
+            return this.run();
+        };
+        by("machine-save").onclick = () => save(new Blob([by("machine-text").value], { type: "application/toml" }), "machine.toml");
+        this.putMachine(example.machine);
         this.listen();
         for (const [id, make] of Object.entries({
             csv: async () => [(await runner.ask({ kind: "csv" })).blob, "pulses.csv"],
@@ -88,7 +105,7 @@ class Form {
     chosen() {
         const gcode = this.language === GCODE;
         by("clock").hidden = gcode;
-        by("machine-line").hidden = !gcode;
+        by("machine-file").hidden = by("machine-told").hidden = !gcode;
         by("lines").rows = gcode ? 12 : 4;
     }
 
@@ -102,17 +119,55 @@ class Form {
         this.chosen();
     }
 
+    putMachine(text) {
+        by("machine-text").value = text;
+        this.readMachine();
+    }
+
+    // The machine of the file that is shown; what is wrong with that is said as the command says it.
+    readMachine() {
+        try {
+            this.machine = MachineReader.read(by("machine-text").value);
+            this.refuse("");
+        } catch (error) {
+            this.refuse(`machine.toml: ${error.message}`);
+        }
+    }
+
+    refuse(text) {
+        this.refused = text;
+        by("machine-line").textContent = text ? "Machine: the file has an error" : machineText(this.machine);
+        by("machine-told").textContent = text;
+        by("machine-text").ariaInvalid = String(text !== "");
+    }
+
+    // A program, or a machine for G-code.
     async open(file) {
+        const isMachine = file.name.toLowerCase().endsWith(".toml");
+        if (isMachine) {
+            if (this.language !== GCODE) this.put(this.example.program, GCODE);
+            by("machine-file").open = true;
+            try {
+                this.putMachine(await textOf(file));
+            } catch (error) {
+                this.putMachine("");
+                this.refuse(error.message);
+            }
+            return this.run();
+        }
         this.put(await file.text(), GCODE);
         this.say(`${file.name}: ${grouped(this.text.split("\n").length)} lines${this.whole ? ", of which the first are shown" : ""}`);
-        await this.run();
+        return this.run();
     }
 
     get state() {
-        return { language: this.language, lines: this.text, clock: Number(by("clock").value), beside: by("beside").value };
+        const { language, text: lines } = this, machine = by("machine-text").value;
+        const own = machine === this.example.machine ? {} : { machine };
+        return { language, lines, clock: Number(by("clock").value), beside: by("beside").value, ...own };
     }
 
-    set state({ language, lines, clock, beside = "" }) {
+    set state({ language, lines, clock, beside = "", machine = this.example.machine }) {
+        this.putMachine(machine);
         if (PROFILES.includes(beside)) by("beside").value = beside;
         this.put(lines, language === GCODE ? GCODE : CONSOLE);
         if (CLOCKS.includes(clock)) by("clock").value = clock;
@@ -156,12 +211,16 @@ class Form {
         }
         this.busy(true);
         try {
+            if (this.language === GCODE && this.refused) throw new BadValue(this.refused);
             const profile = by("beside").value;
             const other = profile ? await this.runner.ask(this.job(profile)) : null;
             await this.show(await this.runner.ask(this.job()), other, profile);
         } catch (error) {
             clearMotion();
-            showFailure(error);
+            by("answer").textContent = "";
+            for (const button of document.querySelectorAll(".save")) button.disabled = true;
+            if (error instanceof BadValue) showVerdict(`error: ${error.message}`, "bad");
+            else showFailure(error);
         }
         this.busy(false);
         this.done++;
@@ -176,15 +235,14 @@ class Form {
         else this.say("");
     }
 
-    async show({ text, motion }, other, profile) {
-        const beside = other?.text.split("\n").find(line => line.startsWith("error"));
-        const wrong = [...text.split("\n").filter(line => line.startsWith("error")), ...(beside ? [`${profile}: ${beside}`] : [])];
-        by("answer").textContent = text;
+    async show({ text, wrong, motion }, other, profile) {
+        const all = [...wrong, ...(other?.wrong ?? []).filter(line => !wrong.includes(line)).map(line => `${profile}: ${line}`)];
+        by("answer").textContent = text || all.join("\n");
         for (const button of document.querySelectorAll(".save")) button.disabled = !motion;
         if (!motion) clearMotion();
         else if (other?.motion) await showMotions([motion, other.motion].map(Motion.from), ["as written", `profile ${profile}`]);
         else await showMotions([Motion.from(motion)]);
-        if (wrong.length) showVerdict(wrong.join("; "), "bad");
+        if (all.length) showVerdict(`error: ${all[0]}${all.length > 1 ? ` (${all.length} errors, listed below)` : ""}`.replace("error: error", "error"), "bad");
         else if (!motion) showVerdict("nothing moved", "stopped");
     }
 }
@@ -195,8 +253,10 @@ async function openWeb() {
     try {
         if (typeof WebAssembly === "undefined") throw new Error("this browser has no WebAssembly");
         const module = await inflate(by("wasm").textContent);
-        const runner = await Runner.open(by("worker").textContent, module, told => web?.progress(told));
-        web = new Form(runner, JSON.parse(by("machine").textContent));
+        const { rules, ...example } = JSON.parse(by("machine").textContent);
+        RULES = rules;
+        const runner = await Runner.open(by("worker").textContent, module, rules.gcode, told => web?.progress(told));
+        web = new Form(runner, example);
         web.state = await fromFragment(location.hash) ?? { language: CONSOLE, lines: EXAMPLES["three axes"] };
         await web.run();
     } catch (error) {

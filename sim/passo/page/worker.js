@@ -2,8 +2,8 @@
 // The worker of the page: the core, its planner and its console as WebAssembly. It works in slices, between which it
 // hears the page, and answers with motions whose arrays move without being copied.
 //
-// In: {kind: "load", module}, {kind: "play", text, machine}, {kind: "type", lines, hz}, {kind: "csv"}, {kind: "report"}, {kind: "cancel"}
-// Out: {kind: "ready"}, {kind: "progress", share, seconds}, {kind: "result", text, motion}, {kind: "csv", blob},
+// In: {kind: "load", module, rules}, {kind: "play", text, machine}, {kind: "type", lines, hz}, {kind: "csv"}, {kind: "report"}, {kind: "cancel"}
+// Out: {kind: "ready"}, {kind: "progress", share, seconds}, {kind: "result", text, wrong, motion}, {kind: "csv", blob},
 //      {kind: "report", facts, edges}, {kind: "failure", text}
 "use strict";
 
@@ -59,17 +59,35 @@ class Core {
         return status;
     }
 
+    // What is wrong with the lines of a program, a sentence each.
+    refusals(text, machine) {
+        const lines = text.split(/\r\n|\r|\n/), count = this.c.refused();
+        const told = this.said().split("\n").filter(Boolean), more = count - told.length;
+        const advice = new Advice(this.rules, machine, word => {
+            const bytes = encoded(word);
+            this.put(bytes, this.c.program(bytes.length));
+            return !this.rules.not_taken.includes(this.c.tries());
+        });
+        const wrong = told.map(line => {
+            const [, number, error, code] = /^(\d+): ((?:error:(\d+))?.*)/.exec(line);
+            return `line ${number}: ${code ? advice.explain(Number(code), error, lines[number - 1]) : `${error}: passo run --surface MAP.csv simulates one`}`;
+        });
+        return more > 0 ? [...wrong, `and ${more} more lines`] : wrong;
+    }
+
     // Plays G-code on a machine after reset (struct web_machine). Returns what is wrong with it, and a motion or null.
-    async play(text, { numbers, motors, clock_hz }) {
+    async play(text, machine) {
+        const { numbers, motors, clock_hz } = machine;
         const bytes = encoded(text);
         this.put(bytes, this.c.program(bytes.length));
         new Float64Array(this.c.memory.buffer, this.c.machine(), numbers.length).set(numbers);
         let status = this.c.begin();
+        if (this.c.refused()) return { text: "", wrong: this.refusals(text, machine), motion: null };
         const whole = Math.max(1, this.c.length());
         if (status === GOES_ON) status = await this.through(() => this.c.go(TURNS), clock_hz, () => this.c.taken_bytes() / whole);
-        const said = this.said().trim();
-        if (status !== DONE && status !== GOES_ON) return { text: `error: ${said}`, motion: null };
-        return { text: "", motion: this.motion(motors, clock_hz, "mm", status === DONE ? "" : `canceled at line ${this.c.taken()}`) };
+        const said = this.said().trim(), at = this.c.taken();
+        if (status !== DONE && status !== GOES_ON) return { text: "", wrong: [at ? `line ${at}: ${said}` : said], motion: null };
+        return { text: "", wrong: [], motion: this.motion(motors, clock_hz, "mm", status === DONE ? "" : `canceled at line ${this.c.taken()}`) };
     }
 
     // Executes lines of the console on a core after reset. Returns what it said, and a motion or null.
@@ -89,7 +107,8 @@ class Core {
         }
         if (status === DONE) status = await this.through(() => this.c.wait(TURNS), hz);
         if (status !== DONE && status !== GOES_ON) text += "error: nothing moves: the motion is held, or waits for sync\n";
-        return { text: text + this.said(), motion: this.motion(SEVERAL, hz, "steps", status === GOES_ON ? "canceled" : "") };
+        text += this.said();
+        return { text, wrong: text.split("\n").filter(line => line.startsWith("error")), motion: this.motion(SEVERAL, hz, "steps", status === GOES_ON ? "canceled" : "") };
     }
 
     // What the charts need, or null if nothing has moved. `names` are the axes with their units per step.
@@ -180,8 +199,9 @@ function buffersOf(value, found = new Set()) {
 
 let core = null;
 const answers = {
-    async load({ module }) {
+    async load({ module, rules }) {
         core = await Core.load(module);
+        core.rules = rules;
         return { kind: "ready" };
     },
     play: async ({ text, machine }) => ({ kind: "result", ...await core.play(text, machine) }),

@@ -1,15 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""A machine for G-code as the page of `make web` knows it."""
+"""A machine for G-code as the page of `make web` has to read it (sim/passo/page/machine_file.js)."""
 
 from typing import Any
 
 import numpy as np
-
 from passo.machine_file import PROFILES, MachineFile
 from passo.path import PathAxis
 from passo.run import AXES_OF_CORES
-
-MOTORS_MOST = 8
+from passo.web_rules import LIMITS, MOTORS_MOST
 
 
 def web_machine(machine: MachineFile) -> dict[str, Any]:
@@ -21,6 +19,8 @@ def web_machine(machine: MachineFile) -> dict[str, Any]:
         "clock_hz": machine.clock_hz,
         "letters": machine.letters,
         "profile": machine.settings.profile,
+        "inputs": machine.gcode.inputs,
+        "power": int(machine.gcode.power),
         "rows": rows,
         "motors": [
             {"name": name, "per_step": 1 / scale}
@@ -49,4 +49,4 @@ def numbers(machine: MachineFile) -> list[float]:
 
 
 def _limits(axis: PathAxis) -> tuple[Any, ...]:
-    return axis.steps_per_mm, axis.speed, axis.acceleration, axis.jump, axis.jerk
+    return tuple(getattr(axis, name) for name in LIMITS)

@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: MIT
+"""The numbers of a first hour with Passo, each with its goal; and that hour itself.
+
+    python -m benchmarks.first_hour [--short]
+
+Writes the table of docs/first_hour.md; `--short` prints one of small cases, without the hour in a fresh clone
+(tools/first_hour.sh). Times are of the processor, but for the page and `make demo`. Needs tools/setup.sh dev
+firmware web browser, and the history of the repository for the times of an earlier commit.
+"""
+
+import argparse
+import json
+import re
+import resource
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from passo.console import console, stages, table
+from passo.output import write_text
+from passo.toolchain import paths
+
+from benchmarks import page, play, preview
+
+PAGE = paths.docs / "first_hour.md"
+TABLE = re.compile(r"(<!-- report: make first-hour writes from here -->\n).*?(<!-- to here -->)", re.S)
+SCRIPT = paths.tools / "first_hour.sh"
+PLAY, RTL, CAMPAIGN = 8, 1.3, 3  # times as fast as in play.BEFORE, at least
+DEMO_SECONDS, DEMO_MEGABYTES, FIRMWARE_SECONDS = 120, 400, 20
+SHORT = 20  # by which lines are fewer
+Tell = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A number with its goal; texts of both with their units."""
+
+    what: str
+    goal: str
+    measured: str
+    met: bool
+    command: str
+
+    @property
+    def row(self) -> tuple[str, ...]:
+        """Of the table."""
+        return self.what, self.goal, self.measured, "yes" if self.met else "**no**", f"`{self.command}`"
+
+
+COLUMNS = ("what", "goal", "measured", "met", "by")
+
+
+def most(what: str, goal: float, measured: float, unit: str, command: str) -> Figure:
+    """A figure that is at most its goal."""
+    return Figure(what, f"at most {goal:g} {unit}", f"{measured:.3g} {unit}", measured <= goal, command)
+
+
+def plays(tell: Tell, short: bool) -> Iterator[Figure]:
+    """Against an earlier commit, in one run."""
+    by_name = {case.name: case for case in play.CASES}
+    for name, goal in (("rosette", PLAY), ("rtl", RTL), ("campaign", CAMPAIGN)):
+        case = by_name[name]
+        if short:
+            case = play.Case(name, max(1, case.lines // SHORT), case.text)
+        (found,) = play.compare([case], tell=tell)
+        said = f"{found.ratio:.2f} times, {found.before:.1f} s and {found.now:.1f} s"
+        what = f"{case.text}, against {play.BEFORE}"
+        yield Figure(what, f"{goal:g} times as fast", said, found.ratio >= goal, "python -m benchmarks.play")
+
+
+def previews(tell: Tell, short: bool) -> Iterator[Figure]:
+    """Of a long program, and against runs."""
+    command, lines = "python -m benchmarks.preview", preview.LINES // (SHORT if short else 1)
+    gcode = preview.GCODE
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        preview.planned(10, folder)  # builds
+        seconds, _ = preview.planned(lines, folder)
+        tell(f"preview: {seconds:.2f} s")
+        yield most(f"`passo preview`, {lines:,} lines", preview.SECONDS, seconds, "s", command)
+        parts = [(gcode / "part.nc", "machine.toml"), (gcode / "engraving.nc", "corexy.toml")]
+        for case, text, count in () if short else preview.PLAYED:
+            (folder / f"{case}.nc").write_text(text(count))
+            parts.append((folder / f"{case}.nc", "machine.toml"))
+        share = max(preview.off(part, gcode / machine, folder)[3] for part, machine in parts)
+        what = f"its time is that of the run, worst of {len(parts)} parts"
+        yield most(what, 100 * preview.SHARE, 100 * share, "%", command)
+
+
+def pages(tell: Tell, short: bool) -> Iterator[Figure]:
+    """Of the page of `make web`."""
+    command, lines = "python -m benchmarks.page", page.LINES // (SHORT if short else 1)
+    found = page.measure(lines)
+    tell(f"page: {found.seconds:.1f} s, longest task {found.longest_task:.3f} s")
+    yield most(f"the page, {lines:,} lines of G-code", page.SECONDS_MOST, found.seconds, "s", command)
+    what = "longest task of the page, processor"
+    yield most(what, 1000 * page.BLOCKED_MOST, 1000 * found.longest_task, "ms", command)
+
+
+def firmware(tell: Tell) -> Iterator[Figure]:
+    """The demonstration of the firmware; builds do not count."""
+    words = [sys.executable, "-m", "passo.cli", "firmware"]
+    for _ in range(2):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        subprocess.run(words, cwd=paths.root, check=True, stdout=subprocess.DEVNULL)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    tell(f"make firmware-demo: {seconds:.1f} s")
+    yield most("`make firmware-demo`", FIRMWARE_SECONDS, seconds, "s", "make firmware-demo")
+
+
+def hour(tell: Tell) -> Iterator[Figure]:
+    """In a fresh clone."""
+    with tempfile.TemporaryDirectory() as name:
+        clone = Path(name) / "passo"
+        subprocess.run(["sh", SCRIPT, paths.root, clone], check=True)
+        made = clone / "build" / "first_hour"
+        found = json.loads((made / "hour.json").read_text())
+        write_picture((made / "page.png").read_bytes())
+    tell(f"make demo: {found['seconds']} s, {found['megabytes']} MB")
+    command = "sh tools/first_hour.sh"
+    yield most("`make demo` in a fresh clone, by the clock", DEMO_SECONDS, found["seconds"], "s", command)
+    yield most("the clone after it", DEMO_MEGABYTES, found["megabytes"], "MB", command)
+    count = f"{found['commands']} of {found['commands']}"
+    yield Figure("commands of README and tutorial that run there", "all", count, True, command)
+    steps = f"{found['steps']:,} steps"
+    yield Figure(
+        "the example part on the page of that clone", "the steps of the command", steps, True, command
+    )
+
+
+def write_picture(png: bytes) -> None:
+    """build/first_hour/page.png of the repository."""
+    folder = paths.build / "first_hour"
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "page.png").write_bytes(png)
+
+
+def written(figures: list[Figure]) -> str:
+    """The page with these figures."""
+    rows = [COLUMNS, ("---", "---", "---", "---", "---"), *(figure.row for figure in figures)]
+    text = "".join(f"| {' | '.join(row)} |\n" for row in rows)
+    return TABLE.sub(lambda found: found[1] + text + found[2], PAGE.read_text(encoding="utf-8"))
+
+
+def measure(short: bool, tell: Tell) -> list[Figure]:
+    """All figures, in the order of the page."""
+    found = [*previews(tell, short), *pages(tell, short)]
+    if not short:
+        found += [*plays(tell, short), *firmware(tell), *hour(tell)]
+    return found
+
+
+def main() -> int:
+    """Of the command."""
+    options = argparse.ArgumentParser(prog="first_hour", description="Measure a first hour with Passo.")
+    options.add_argument("--short", action="store_true", help="small cases, no fresh clone, no page")
+    short = options.parse_args().short
+    figures = measure(short, stages())
+    if not short:
+        write_text(PAGE, written(figures))
+    rows = table("A first hour", *COLUMNS)
+    for figure in figures:
+        rows.add_row(*figure.row)
+    console.print(rows)
+    return int(not all(figure.met for figure in figures))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

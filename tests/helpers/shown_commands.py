@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: MIT
+"""The commands that README and documents show, and a folder to run them in."""
+
+import re
+import shlex
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from passo.toolchain import environment, paths
+
+PAGES = (paths.root / "README.md", *sorted(paths.docs.glob("*.md")))
+TUTORIAL = paths.docs / "tutorial.md"
+BLOCKS = re.compile(r"^```(sh|toml)\n(.*?)^```", re.S | re.M)
+COMMAND = re.compile(r"^(?:\.venv/bin/)?(passo|make) [^#&\n]*", re.M)
+LINES = "help\n"  # for the console
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A command of a page, and the move file before it, or that of the tutorial."""
+
+    page: Path
+    command: str
+    moves: str
+
+    def __str__(self) -> str:
+        return f"{self.page.stem}: {self.command}"
+
+    @property
+    def words(self) -> list[str]:
+        """Of the command."""
+        return shlex.split(self.command.removeprefix(".venv/bin/"))
+
+
+def shown(pages: tuple[Path, ...] = PAGES) -> list[Shown]:
+    """Of these pages; a command that a page shows twice is one."""
+    (tutorial,) = (text for kind, text in BLOCKS.findall(TUTORIAL.read_text()) if kind == "toml")
+    found = []
+    for page in pages:
+        moves = tutorial
+        for kind, text in BLOCKS.findall(page.read_text(encoding="utf-8")):
+            if kind == "toml" and "[[move]]" in text and "clock_hz" in text:
+                moves = text
+            elif kind == "sh":
+                found += [Shown(page, match[0].strip(), moves) for match in COMMAND.finditer(text)]
+    return list({str(one): one for one in found}.values())
+
+
+def run(one: Shown, folder: Path) -> subprocess.CompletedProcess[str]:
+    """Run a command of `passo` in an empty folder, with the examples of the repository."""
+    (folder / "examples").symlink_to(paths.examples)
+    (folder / "moves.toml").write_text(one.moves)
+    (folder / "lines.txt").write_text(LINES)
+    program = Path(sys.executable).with_name("passo")
+    line = one.command.removeprefix(".venv/bin/").replace("passo", str(program), 1)
+    return subprocess.run(
+        ["sh", "-c", line],
+        cwd=folder,
+        env=environment(),
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+    )
