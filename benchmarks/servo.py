@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a servo thread on Linux can rely on (linux/passo_servo.h): clocks that differ, late wakes, gaps, deaths."""
+"""What a servo thread on Linux can rely on (linux/passo_servo.h): clocks that differ, gaps, deaths."""
 
 import random
 from collections.abc import Callable, Sequence
@@ -11,6 +11,7 @@ from passo.build import Parameters
 from passo.driver import Driver, DriverError
 from passo.engine import Engine, model_engine, moves_of
 from passo.native import ffi, planner
+from passo.registers import Cause
 
 from benchmarks.hosts import Counted
 from tests.helpers.driver_wire import Noise
@@ -142,7 +143,7 @@ class Run:
         return found[np.searchsorted(self.pins["clock"], clocks, "right")]
 
     def passes(self, tick: int = 32) -> np.ndarray:
-        """Periods after its command at which each place is passed by all axes at once, within a step; NaN: not.
+        """Periods after its command at which all axes pass each place at once, within a step; NaN: not.
 
         Each is sought from the time of the one before; places at which the axes rest are left out.
         """
@@ -270,5 +271,5 @@ def run(
             sent,
             servo.c.slowed,
             servo.driver.positions()[: setting.axes],
-            servo.driver.snapshot().cause.name,
+            Cause(servo.driver.snapshot().cause).name,
         )

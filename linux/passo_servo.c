@@ -347,7 +347,8 @@ static enum passo_servo_problem check_axis(struct passo_servo *servo, uint8_t ax
 	if (limits->speed > highest - highest / (1000000u / PASSO_SERVO_TRIM_MAX)
 	    || servo->top[axis] > servo->substeps - servo->substeps / 64u)
 		return PASSO_SERVO_PINS;
-	const uint64_t stop = passo_mul_div_ceil(servo->top[axis], 1, servo->change[axis]);
+	const uint64_t stop = passo_mul_div_ceil(
+	    passo_mul_div_ceil(limits->speed, NANOSECONDS * 2u, limits->acceleration), 1, period);
 	if (stop > UINT16_MAX)
 		return PASSO_SERVO_LAG;
 	if (stop > servo->stop)
