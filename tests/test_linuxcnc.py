@@ -77,9 +77,10 @@ def test_settings_that_are_wrong() -> None:
         script += f"{STEPGEN}{change}\n{STEPGEN}enable 1\n{PAUSE}"
         script += f"{STEPGEN}enable 0\n{STEPGEN}{name} {GOOD[name]}\n{PAUSE}"
     script += f"{STEPGEN}enable 1\n{PAUSE}getp passo.0.fault\ngetp passo.0.state\n"
+    script += f"stop\n{PAUSE}"
     for function in ("read", "write"):
         script += f"delf passo.0.{function} servo\n"
-    script += f"addf passo.0.read slow\naddf passo.0.write slow\n{PAUSE}getp passo.0.fault\n"
+    script += f"addf passo.0.read slow\naddf passo.0.write slow\nstart\n{PAUSE}getp passo.0.fault\n"
     said, events = run_hal(script)
     sentences = [line for line in said.splitlines() if line.startswith("passo: ")]
     expected = [
