@@ -1,7 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""What a servo thread on Linux can rely on (linux/passo_servo.h): clocks that differ, gaps, deaths."""
+"""What a servo thread on Linux can rely on (linux/passo_servo.h): clocks that differ, gaps, deaths.
+
+    python -m benchmarks.servo [SEED]
+
+Three axes at 1 kHz on the C model, judged at the pins; then an hour; then LinuxCNC, if it is installed.
+"""
 
 import random
+import shutil
+import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -22,6 +29,11 @@ SPEED, ACCELERATION = 100.0, 2000.0  # mm/s, mm/s^2 of an axis; half of the latt
 PINS = {"step_high_ns": 1000, "step_low_ns": 1000, "dir_setup_ns": 500, "dir_hold_ns": 500}
 UNIT = float(1 << 32)
 MICROSECOND = 1e-6
+PPM, ERRORS, GAP = 200, 1e-4, (0.002, 0.05)
+LATE = 3  # periods beyond the lag: the queue is read once in a period, and the core begins within another
+ROUNDING = 1.01  # of what is computed from steps
+ROUNDING_PPM = 125.0  # a substep of a line
+SHARE_MAX = 0.2  # of the wire
 
 Command = Callable[[float], Sequence[float]]  # mm of each axis at a time in s
 
@@ -273,3 +285,155 @@ def run(
             servo.driver.positions()[: setting.axes],
             Cause(servo.driver.snapshot().cause).name,
         )
+
+
+@dataclass(frozen=True)
+class Figures:
+    """What was measured."""
+
+    lag: int  # periods
+    late: float  # periods by which a place is passed after its command, at most
+    lost: int  # steps
+    hardest: float  # mm/s^2, in step
+    trim_step: float  # ppm by which a line differs from the one before, at most, by the loop
+    gaps_hardest: float
+    gaps_slowed: int
+    gaps_off: bool  # a place was not passed
+    flips: int
+    causes: dict[str, int]  # of the stops after a death
+    deaths_hardest: float
+    share: float  # of a wire of 4 MHz, six axes at 1 kHz
+    bytes_per_call: float  # of an axis
+    following: float  # mm, the greatest following error
+    one_period: float  # mm, the same of a lag of one period
+    hour_lost: int
+    hour_late: int  # lines that the queue differs from the lag
+
+
+def measure(seed: int, seconds: float = 10, count: int = 50, deaths: int = 20, hour: float = 3600) -> Figures:
+    """Run everything; `count` gaps."""
+    setting, command = Setting(), waves(AXES, seconds)
+    rng = random.Random(seed)
+    wakes = gaps(seed, setting, seconds, 0, GAP)
+    noise = Noise(rng, ERRORS)
+    steady = [run(setting, seconds, command, ppm, wakes) for ppm in (-PPM, PPM)]
+    steady.append(run(setting, seconds, command, PPM, wakes, noise))
+    late = run(setting, seconds, command, PPM, gaps(seed, setting, seconds, count, GAP), settle=4)
+    ends = [
+        run(setting, seconds, command, rng.choice((-PPM, PPM)), wakes, die=rng.randrange(200, 3000))
+        for _ in range(deaths)
+    ]
+    wire = run(Setting(axes=6, scale=80, inputs=False), 2, waves(6, 2))
+    slow = Setting(
+        axes=2, scale=50, period=0.02, clock_hz=1_000_000, inputs=False, speed=50, acceleration=400
+    )
+    long = run(slow, hour, lambda time: [20 * np.sin(time), 7 * np.sin(2.3 * time)], PPM)
+    passed = [found.passes()[found.moved] for found in steady]
+    speeds = np.abs(np.diff(steady[0].places, axis=0)).max()
+    causes = [found.cause for found in ends]
+    return Figures(
+        steady[0].lag,
+        max(np.inf if np.isnan(one).any() else float(one.max()) for one in passed),
+        max(lost(found) for found in (*steady, late, *ends)),
+        max(found.hardest for found in steady),
+        max(float(np.abs(np.diff(found.trims)).max()) for found in steady) / 1000,
+        late.hardest,
+        late.slowed,
+        bool(np.isnan(late.passes()[late.moved]).any()),
+        noise.flips,
+        {cause: causes.count(cause) for cause in sorted(set(causes))},
+        max((found.hardest for found in ends), default=0.0),
+        wire.words * 32 / SCLK_HZ / (len(wire.places) * PERIOD),
+        wire.words * 4 / len(wire.places) / 6,
+        max(following(found) for found in steady),
+        float(speeds),
+        lost(long),
+        int(abs(np.median(long.depths[-500:]) - long.lag)),
+    )
+
+
+def lost(found: Run) -> int:
+    """Steps by which pins, core and, at the end of a command, its last place differ."""
+    off = [abs(a - b) for a, b in zip(found.positions, found.made, strict=True)]
+    if found.cause == Cause.STOP.name:
+        off += [abs(a - b) for a, b in zip(found.made, found.commands[-1].tolist(), strict=True)]
+    return max(off)
+
+
+def following(found: Run) -> float:
+    """The greatest distance of an axis from its command at the time of a call, mm."""
+    calls = np.arange(len(found.places))
+    clocks = (found.begun + calls * found.period).astype(np.int64)
+    return max(
+        float(np.abs(found.at(axis, clocks) - found.commands[:, axis]).max()) / found.setting.scale
+        for axis in range(found.setting.axes)
+    )
+
+
+def good(found: Figures) -> bool:
+    """All promises are kept."""
+    exact = found.lost == found.hour_lost == 0 and not found.gaps_off and found.hour_late <= 1
+    soft = found.hardest <= ACCELERATION / 2 * ROUNDING
+    soft = soft and max(found.gaps_hardest, found.deaths_hardest) <= ACCELERATION * ROUNDING
+    in_step = found.late <= found.lag + LATE and found.trim_step < ROUNDING_PPM
+    return (
+        exact and soft and in_step and found.share <= SHARE_MAX and set(found.causes) == {Cause.WATCHDOG.name}
+    )
+
+
+def short_lines(count: int) -> str:
+    """A program of short lines on a curve in the middle of the machine, and its end at X100 Y60."""
+    angles = np.linspace(0, 40 * np.pi, count)
+    radii = 40 + 8 * np.sin(7.3 * angles)
+    points = [
+        f"X{60 + radius * np.cos(angle):.4f} Y{60 + radius * np.sin(angle):.4f}"
+        for radius, angle in zip(radii, angles, strict=True)
+    ]
+    return "\n".join(
+        ["G21 G90 G64 P0.01", "G1 F6000 Z74", *(f"G1 {p}" for p in points), "G1 X100 Y60", "M2", ""]
+    )
+
+
+def linuxcnc() -> bool:
+    """Programs in LinuxCNC; prints figures."""
+    from tests.helpers.linuxcnc import run_linuxcnc
+
+    kept = True
+    for name, program, engine in (
+        ("20,000 short lines", short_lines(20_000), "model"),
+        ("200 short lines, model and Verilated core", short_lines(200), "both"),
+    ):
+        found = run_linuxcnc(program, engine)
+        done = found.homed and found.ended and not found.said
+        exact = done and np.abs(np.array(found.positions) - [100, 60, 74]).max() < 1e-9
+        kept = kept and exact
+        print(
+            f"LinuxCNC, {name}: {'end exact' if exact else 'WRONG'}; {found.said or 'no fault'}", flush=True
+        )
+        print(f"    following error at most {max(found.ferror or [np.nan]):.2f} mm", flush=True)
+    return kept
+
+
+def main() -> int:
+    """Print the figures; 1 if one of them is not as promised."""
+    found = measure(int(sys.argv[1]) if len(sys.argv) > 1 else 1)
+    for line in (
+        f"clocks {PPM} ppm apart, wakes late by up to 1 ms, bit errors of {ERRORS:g} ({found.flips} bits):",
+        f"    every place within a step at most {found.late:.1f} periods after its command; lag {found.lag}",
+        f"    steps lost: {found.lost}; acceleration {found.hardest:.0f} of {ACCELERATION:g} mm/s^2",
+        f"    the loop changes a line by at most {found.trim_step:.1f} ppm; its rounding: {ROUNDING_PPM:g} ppm",
+        f"gaps of {GAP[0]:g} to {GAP[1]:g} s slow {found.gaps_slowed} times: {found.gaps_hardest:.0f} mm/s^2",
+        f"deaths of the host: {found.causes}; {found.deaths_hardest:.0f} mm/s^2",
+        f"six axes at 1 kHz: {found.share:.1%} of 4 MHz, {found.bytes_per_call:.1f} bytes per axis and call",
+        f"following error {found.following:.2f} mm; with a lag of one period {found.one_period:.2f} mm",
+        f"after an hour: steps lost {found.hour_lost}; lines off the lag {found.hour_late}",
+    ):
+        print(line, flush=True)
+    kept = good(found)
+    if shutil.which("linuxcnc"):
+        kept = linuxcnc() and kept
+    return int(not kept)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

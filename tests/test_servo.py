@@ -10,13 +10,11 @@ from passo.driver import DriverError
 from passo.engine import model_engine
 from passo.registers import Cause, State
 
-from benchmarks.servo import ACCELERATION, Run, Servo, Setting, gaps, run, waves
+from benchmarks.servo import ACCELERATION, LATE, ROUNDING, Run, Servo, Setting, gaps, run, waves
 from tests.helpers.driver_wire import Noise
 
 SETTING = Setting()
 SECONDS = 2.0
-LATE = 3  # periods beyond the lag: the queue is read once in a period, and the core begins within another
-ROUNDING = 1.01  # of what is computed from steps
 PROBLEMS = ("OK", "PERIOD", "AXES", "SPEED", "ACCELERATION", "PINS", "LAG")
 
 

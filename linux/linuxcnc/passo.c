@@ -9,12 +9,14 @@
  * docs/hosts.md has the table of pins.
  */
 #include <math.h>
+#include <stdatomic.h>
 #include <stdint.h>
 
 #include "hal.h"
 #include "passo.h"
 #include "passo_inputs.h"
 #include "passo_linux.h"
+#include "passo_linux_private.h"
 #include "passo_outputs.h"
 #include "passo_servo.h"
 #include "passo_words.h"
@@ -47,6 +49,7 @@ RTAPI_MP_INT(watchdog_ms, "after which a core with inputs stops without a host; 
 #define OUTPUTS 8u
 #define INPUT_WORDS 5u /* from INPUT_LEVELS to TRIGGER_STATE */
 #define BYTE 8u
+#define EXIT_WAITS 2000u
 
 struct stepgen {
 	hal_float_t *command, *feedback, *velocity;
@@ -83,6 +86,9 @@ static bool drives_due; /* the drives are to be switched off, when at rest */
 static long period_ns;
 static unsigned inputs; /* of the core; 0: none */
 static bool outputs;
+/* A call may take longer than HAL waits before it unloads the component. */
+static atomic_bool leaving;
+static atomic_uint under_way;
 
 /* ---------------------------------------------------------------------------------------- sentences ---- */
 
@@ -322,9 +328,8 @@ static void pass_period(long period)
 		host.hardware.wait(&linux_host, left);
 }
 
-static void write_core(void *arg, long period)
+static void write_pins(long period)
 {
-	(void)arg;
 	if (period_ns != 0 && period != period_ns && phase == ON) {
 		TELL("the servo period changes from %ld to %ld ns: let all functions of passo run in one "
 		     "thread\n",
@@ -366,12 +371,11 @@ static void read_inputs(void)
 	}
 }
 
-static void read_core(void *arg, long period)
+static void read_pins(long period)
 {
 	int32_t counts[PASSO_AXES_MAX];
 	const struct passo_snapshot *snapshot = passo_snapshot(&passo);
 
-	(void)arg;
 	if (passo_positions(&passo, counts) == PASSO_OK) {
 		for (int axis = 0; axis < axes; axis++) {
 			struct stepgen *own = &pins->stepgen[axis];
@@ -389,6 +393,17 @@ static void read_core(void *arg, long period)
 	*pins->cause = (hal_s32_t)snapshot->cause;
 	*pins->frames = host.counters.frames;
 	*pins->retries = host.counters.retries;
+}
+
+/* A function of HAL: `arg` is read_pins() or write_pins(). */
+static void call(void *arg, long period)
+{
+	void (*const *const function)(long) = arg;
+
+	atomic_fetch_add(&under_way, 1u);
+	if (!atomic_load(&leaving))
+		(*function)(period);
+	atomic_fetch_sub(&under_way, 1u);
 }
 
 /* ------------------------------------------------------------------------------------------- load ---- */
@@ -440,6 +455,8 @@ static int make_inputs_and_outputs(void)
 
 static int make_pins(void)
 {
+	static void (*const READ)(long) = read_pins;
+	static void (*const WRITE)(long) = write_pins;
 	int failed = 0;
 
 	pins = hal_malloc(sizeof *pins);
@@ -459,8 +476,8 @@ static int make_pins(void)
 	failed |= hal_pin_float_newf(HAL_OUT, &pins->trim, component, PREFIX "queue.trim-ppm");
 	failed |= hal_pin_u32_newf(HAL_OUT, &pins->frames, component, PREFIX "link.frames");
 	failed |= hal_pin_u32_newf(HAL_OUT, &pins->retries, component, PREFIX "link.retries");
-	failed |= hal_export_funct(PREFIX "read", read_core, NULL, 1, 0, component);
-	failed |= hal_export_funct(PREFIX "write", write_core, NULL, 1, 0, component);
+	failed |= hal_export_funct(PREFIX "read", call, (void *)&READ, 1, 0, component);
+	failed |= hal_export_funct(PREFIX "write", call, (void *)&WRITE, 1, 0, component);
 	return failed;
 }
 
@@ -515,6 +532,9 @@ int rtapi_app_main(void)
 
 void rtapi_app_exit(void)
 {
+	atomic_store(&leaving, true);
+	for (unsigned waits = 0; atomic_load(&under_way) != 0u && waits < EXIT_WAITS; waits++)
+		passo_linux_sleep(NULL, MS);
 	if (passo_servo_is_on(&servo))
 		passo_servo_stop(&servo);
 	passo_close_linux(&linux_host);
