@@ -34,6 +34,7 @@ LATE = 3  # periods beyond the lag: the queue is read once in a period, and the 
 ROUNDING = 1.01  # of what is computed from steps
 ROUNDING_PPM = 125.0  # a substep of a line
 SHARE_MAX = 0.2  # of the wire
+STEADY = 100  # calls until the queue is filled and the motion runs
 
 Command = Callable[[float], Sequence[float]]  # mm of each axis at a time in s
 
@@ -139,7 +140,7 @@ class Run:
     places: np.ndarray  # commands, call x axis
     depths: np.ndarray
     trims: np.ndarray
-    words: int
+    words: int  # on the wire since call STEADY
     slowed: int
     positions: list[int]
     cause: str
@@ -155,7 +156,7 @@ class Run:
         return found[np.searchsorted(self.pins["clock"], clocks, "right")]
 
     def passes(self, tick: int = 32) -> np.ndarray:
-        """Periods after its command at which all axes pass each place at once, within a step; NaN: not.
+        """Periods after its command at which all axes are within a step of its place together; NaN: never.
 
         Each is sought from the time of the one before; places at which the axes rest are left out.
         """
@@ -229,7 +230,7 @@ def second(values: np.ndarray, grid: np.ndarray) -> np.ndarray:
 def gaps(
     seed: int, setting: Setting, seconds: float, count: int, size: tuple[float, float]
 ) -> Callable[[int], float]:
-    """Wakes that are late by up to 1 ms, and `count` gaps of so many s, after which the calls catch up."""
+    """Wakes that are late by up to 1 ms, and `count` gaps of `size` s, after which the calls catch up."""
     rng = random.Random(seed)
     at = set(rng.sample(range(100, round(seconds / setting.period)), count))
     until = 0.0
@@ -260,9 +261,10 @@ def run(
     with model_engine(setting.core, setting.clock_hz) as engine:
         servo = Servo(engine, setting, ppm, noise)
         servo.start()
-        words, count = servo.wire.words, min(die, round((seconds + settle) / setting.period))
+        words, count = 0, min(die, round((seconds + settle) / setting.period))
         places, depths, trims = np.zeros((count, setting.axes)), np.zeros(count), np.zeros(count)
         for call in range(count):
+            words = servo.wire.words if call == STEADY else words
             places[call] = command(min(call * setting.period, seconds))
             servo.call(places[call], late(call))
             servo.driver.positions()
@@ -343,8 +345,8 @@ def measure(seed: int, seconds: float = 10, count: int = 50, deaths: int = 20, h
         noise.flips,
         {cause: causes.count(cause) for cause in sorted(set(causes))},
         max((found.hardest for found in ends), default=0.0),
-        wire.words * 32 / SCLK_HZ / (len(wire.places) * PERIOD),
-        wire.words * 4 / len(wire.places) / 6,
+        wire.words * 32 / SCLK_HZ / ((len(wire.places) - STEADY) * PERIOD),
+        wire.words * 4 / (len(wire.places) - STEADY) / 6,
         max(following(found) for found in steady),
         float(speeds),
         lost(long),
@@ -421,7 +423,7 @@ def main() -> int:
         f"clocks {PPM} ppm apart, wakes late by up to 1 ms, bit errors of {ERRORS:g} ({found.flips} bits):",
         f"    every place within a step at most {found.late:.1f} periods after its command; lag {found.lag}",
         f"    steps lost: {found.lost}; acceleration {found.hardest:.0f} of {ACCELERATION:g} mm/s^2",
-        f"    the loop changes a line by at most {found.trim_step:.1f} ppm; its rounding: {ROUNDING_PPM:g} ppm",
+        f"    the loop changes a line by at most {found.trim_step:.1f} ppm; rounding: {ROUNDING_PPM:g} ppm",
         f"gaps of {GAP[0]:g} to {GAP[1]:g} s slow {found.gaps_slowed} times: {found.gaps_hardest:.0f} mm/s^2",
         f"deaths of the host: {found.causes}; {found.deaths_hardest:.0f} mm/s^2",
         f"six axes at 1 kHz: {found.share:.1%} of 4 MHz, {found.bytes_per_call:.1f} bytes per axis and call",

@@ -282,7 +282,7 @@ static bool is_sending(const struct passo_servo *servo)
 	return servo->passo->host->posted != NULL;
 }
 
-/* Sends what there is, with at most so many frames. */
+/* Sends what there is, with at most `polls` frames. */
 static enum passo_error send(struct passo_servo *servo, uint32_t polls)
 {
 	enum passo_error error = PASSO_OK;

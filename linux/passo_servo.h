@@ -11,7 +11,7 @@
  * of program and core may differ, and a loop on the depth of the core's queue makes the lines longer or
  * shorter. The speed of the path is held for `buffer` to 2 `buffer` periods, after which the core decelerates
  * along the lines that it knows; each call that comes in time prolongs it. So the path is kept when the
- * program is late: it slows down, holds, and goes on when the program does. Nothing is dropped.
+ * program is late: it slows down, holds, and continues when the program does. Nothing is dropped.
  *
  * Half of the acceleration of an axis is for the commands, and half for this slowing down. So the lag in
  * periods is 2 `buffer` + PASSO_SERVO_MARGIN + (speed / acceleration) / period, for the slowest axis.
@@ -113,7 +113,7 @@ enum passo_error passo_servo_start(struct passo_servo *servo);
  * more than PASSO_SERVO_LINES periods; those of passo_poll(). After an error the axes have stopped, or do so.
  */
 enum passo_error passo_servo_write(struct passo_servo *servo, const int64_t *commands);
-#define PASSO_SERVO_LOOK 32u
+#define PASSO_SERVO_LOOK 64u
 
 /* Ends with a soft stop along the lines. Errors: those of passo_stop(). */
 enum passo_error passo_servo_stop(struct passo_servo *servo);
