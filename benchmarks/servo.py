@@ -321,10 +321,10 @@ def measure(seed: int, seconds: float = 10, count: int = 50, deaths: int = 20, h
     steady = [run(setting, seconds, command, ppm, wakes) for ppm in (-PPM, PPM)]
     steady.append(run(setting, seconds, command, PPM, wakes, noise))
     late = run(setting, seconds, command, PPM, gaps(seed, setting, seconds, count, GAP), settle=4)
-    ends = [
-        run(setting, seconds, command, rng.choice((-PPM, PPM)), wakes, die=rng.randrange(200, 3000))
-        for _ in range(deaths)
-    ]
+    ends = []
+    for _ in range(deaths):
+        end = run(setting, seconds, command, rng.choice((-PPM, PPM)), wakes, die=rng.randrange(200, 3000))
+        ends.append((end.cause, end.hardest, lost(end)))
     wire = run(Setting(axes=6, scale=80, inputs=False), 2, waves(6, 2))
     slow = Setting(
         axes=2, scale=50, period=0.02, clock_hz=1_000_000, inputs=False, speed=50, acceleration=400
@@ -332,11 +332,11 @@ def measure(seed: int, seconds: float = 10, count: int = 50, deaths: int = 20, h
     long = run(slow, hour, lambda time: [20 * np.sin(time), 7 * np.sin(2.3 * time)], PPM)
     passed = [found.passes()[found.moved] for found in steady]
     speeds = np.abs(np.diff(steady[0].places, axis=0)).max()
-    causes = [found.cause for found in ends]
+    causes = [cause for cause, _, _ in ends]
     return Figures(
         steady[0].lag,
         max(np.inf if np.isnan(one).any() else float(one.max()) for one in passed),
-        max(lost(found) for found in (*steady, late, *ends)),
+        max(*(lost(found) for found in (*steady, late)), *(steps for _, _, steps in ends)),
         max(found.hardest for found in steady),
         max(float(np.abs(np.diff(found.trims)).max()) for found in steady) / 1000,
         late.hardest,
@@ -344,7 +344,7 @@ def measure(seed: int, seconds: float = 10, count: int = 50, deaths: int = 20, h
         bool(np.isnan(late.passes()[late.moved]).any()),
         noise.flips,
         {cause: causes.count(cause) for cause in sorted(set(causes))},
-        max((found.hardest for found in ends), default=0.0),
+        max(hardest for _, hardest, _ in ends),
         wire.words * 32 / SCLK_HZ / ((len(wire.places) - STEADY) * PERIOD),
         wire.words * 4 / (len(wire.places) - STEADY) / 6,
         max(following(found) for found in steady),
