@@ -194,14 +194,17 @@ class Run:
         return [int(moves_of(self.pins, axis).sum()) for axis in range(self.setting.axes)]
 
     def acceleration(self, axis: int, window: float) -> float:
-        """The highest one over some seconds, mm/s^2, less what the rounding of steps can make."""
+        """The highest one over some seconds, mm/s^2, less what the rounding of steps can make.
+
+        Commands are rounded to steps, and steps to their places in a line: each position by up to one step.
+        """
         clock_hz, scale = self.setting.clock_hz, self.setting.scale
         length = round(window * clock_hz)
         first, last = int(self.pins["clock"][0]), int(self.pins["clock"][-1])
         times = np.arange(first, last + 2 * length, length // 8)
         place = self.at(axis, times)
         change = np.abs(place[16:] - 2 * place[8:-8] + place[:-16])
-        return float(max(0, change.max() - 2)) / scale / window**2
+        return float(max(0, change.max() - 4)) / scale / window**2
 
 
 def waves(axes: int, seconds: float, speed: float = SPEED, acceleration: float = ACCELERATION / 2) -> Command:
