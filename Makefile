@@ -103,8 +103,10 @@ path: ## Measure the path planner: time, limits at the pins, instructions on the
 	@tools/setup.sh dev firmware path
 	@$(BIN)/python -m benchmarks.path $(PATHS)
 
-hosts: ## Measure timed points: late polls, bit errors, hosts that die, an hour (minutes).
+hosts: ## Measure hosts on Linux, timed points and servo threads: late, with bit errors, dead, for an hour; and LinuxCNC (half an hour).
+	@tools/setup.sh dev linuxcnc
 	@$(BIN)/python -m benchmarks.hosts
+	@$(BIN)/python -m benchmarks.servo
 
 gcode-peer: ## Compare random G-code programs with LinuxCNC's interpreter (minutes); PROGRAMS=, SEED=.
 	@tools/setup.sh gcode

@@ -4,7 +4,7 @@
 #     tools/setup.sh [SET...]
 # A SET is an optional set of Python packages in requirements-SET.txt (dev, yosys, ...); or `firmware`:
 # Debian's compiler for the STM32; or `browser`: Debian's headless Chromium and Firefox, and axe, where npm is; or
-# `vhdl`: Debian's GHDL; or `gcode`: rs274, the interpreter of Debian's LinuxCNC; or `fuzz`: Debian's clang with
+# `vhdl`: Debian's GHDL; or `gcode`: rs274, the interpreter of Debian's LinuxCNC; or `linuxcnc`: all of it (120 packages); or `fuzz`: Debian's clang with
 # libFuzzer; or `cncjs`: the controller of that sender, where npm is. Safe to run again at any time: it installs only
 # what is missing.
 # PYTHON selects the interpreter for the environment (default: python3).
@@ -50,6 +50,9 @@ for name in "$@"; do
         npm_sets+=(axe)
     elif [ "$name" = vhdl ]; then
         tools+=" ghdl:ghdl"
+    elif [ "$name" = linuxcnc ]; then
+        tools+=" linuxcnc:linuxcnc-uspace"
+        headers+=" linuxcnc/hal.h:linuxcnc-uspace-dev"
     elif [ "$name" = fuzz ]; then
         fuzz=yes
     elif [ "$name" = gcode ]; then

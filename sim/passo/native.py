@@ -40,6 +40,7 @@ HEADERS = (
     paths.driver / "passo_outputs.h",
     paths.driver / "passo_encoder.h",
     paths.linux / "passo_linux.h",
+    paths.linux / "passo_servo.h",
     paths.grbl / "passo_player.h",
     paths.grbl / "passo_program.h",
     paths.grbl / "passo_storage.h",

@@ -88,7 +88,7 @@ def _gcode() -> dict[str, Any]:
         "unused": refusals.UNUSED,
         "no_port": refusals.NO_PORT,
         "letters": refusals.LETTERS,
-        "advice": [(letter, codes.start, codes.stop, *told) for letter, codes, *told in refusals.ADVICE],
+        "advice": [(letter, codes.start, codes.stop, *told) for letter, codes, _, *told in refusals.ADVICE],
         "otherwise": refusals.OTHERWISE,
         "expanded": (f"^{FLOW.pattern}", NEEDS.pattern),
     }

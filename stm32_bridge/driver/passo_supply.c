@@ -65,10 +65,11 @@ static bool is_line(const struct passo *passo, const struct passo_line *line)
 	return true;
 }
 
-static bool is_ramp(const struct passo_ramp *ramp)
+/* NOW needs a motion. */
+static bool is_ramp(const struct passo *passo, const struct passo_ramp *ramp)
 {
-	return !ramp->now && ramp->velocity_end <= PASSO_VELOCITY_MAX && (unsigned)ramp->shape <= PASSO_BANKS
-	    && ramp->progress_step <= PASSO_PROGRESS_STEP_MAX;
+	return (!ramp->now || passo->stream == PASSO_STREAM_RUNS) && ramp->velocity_end <= PASSO_VELOCITY_MAX
+	    && (unsigned)ramp->shape <= PASSO_BANKS && ramp->progress_step <= PASSO_PROGRESS_STEP_MAX;
 }
 
 enum passo_error passo_driver_take_lines(struct passo *passo, size_t *length)
@@ -115,7 +116,7 @@ enum passo_error passo_driver_take_ramps(struct passo *passo, size_t *length)
 			passo->ramps = PASSO_SUPPLY_DRY;
 			break;
 		}
-		if (!is_ramp(&ramp))
+		if (!is_ramp(passo, &ramp))
 			return PASSO_ERROR_SUPPLY;
 		*length += passo_ramp_words(payload + *length, &ramp);
 		if (ramp.last)

@@ -1,0 +1,444 @@
+# SPDX-License-Identifier: MIT
+"""What a servo thread on Linux can rely on (linux/passo_servo.h): clocks that differ, gaps, deaths.
+
+    python -m benchmarks.servo [SEED]
+
+Three axes at 1 kHz on the C model, judged at the pins; then an hour; then LinuxCNC, if it is installed.
+"""
+
+import random
+import shutil
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from passo.build import Parameters
+from passo.driver import Driver, DriverError
+from passo.engine import Engine, model_engine, moves_of
+from passo.native import ffi, planner
+from passo.registers import Cause
+
+from benchmarks.hosts import Counted
+from tests.helpers.driver_wire import Noise
+
+CLOCK_HZ, SCLK_HZ = 16_000_000, 4_000_000  # two clocks per level
+AXES, SCALE, PERIOD = 3, 800, 0.001
+SPEED, ACCELERATION = 100.0, 2000.0  # mm/s, mm/s^2 of an axis; half of the latter for the commands
+PINS = {"step_high_ns": 1000, "step_low_ns": 1000, "dir_setup_ns": 500, "dir_hold_ns": 500}
+UNIT = float(1 << 32)
+MICROSECOND = 1e-6
+PPM, ERRORS, GAP = 200, 1e-4, (0.002, 0.05)
+LATE = 3  # periods beyond the lag: the queue is read once in a period, and the core begins within another
+ROUNDING = 1.01  # of what is computed from steps
+ROUNDING_PPM = 125.0  # a substep of a line
+SHARE_MAX = 0.2  # of the wire
+STEADY = 100  # calls until the queue is filled and the motion runs
+
+Command = Callable[[float], Sequence[float]]  # mm of each axis at a time in s
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A machine and its servo thread."""
+
+    axes: int = AXES
+    scale: float = SCALE  # steps/mm
+    period: float = PERIOD
+    speed: float = SPEED
+    acceleration: float = ACCELERATION
+    buffer: int = 0
+    clock_hz: int = CLOCK_HZ
+    inputs: bool = True
+
+    @property
+    def core(self) -> Parameters:
+        """Of the core."""
+        return Parameters(axes=self.axes, clock_hz=self.clock_hz, inputs=self.inputs)
+
+    def options(self) -> Any:
+        """`struct passo_servo_options`."""
+        limit = (round(self.speed * self.scale * UNIT), round(self.acceleration * self.scale * UNIT))
+        found = ffi().new("struct passo_servo_options *")
+        found.period_ns, found.buffer, found.axes = round(self.period * 1e9), self.buffer, self.axes
+        for axis in range(self.axes):
+            found.axis[axis].speed, found.axis[axis].acceleration = limit
+        return found
+
+
+class Servo:
+    """A servo thread whose clock is `ppm` fast beside that of the core."""
+
+    def __init__(self, engine: Engine, setting: Setting, ppm: float = 0, noise: Noise | None = None):
+        """Open the core and start."""
+        self.engine, self.setting = engine, setting
+        self.wire = Counted(engine, noise)
+        self.driver = Driver(self.wire, tries=20)
+        for axis in range(setting.axes):
+            self.driver.call("configure_axis", axis, ffi().new("struct passo_axis_config *", PINS))
+            self.driver.call("enable", axis, True)
+        self.c = ffi().new("struct passo_servo *")
+        self._lib, self.options = planner(), setting.options()
+        self.check()
+        self._commands = ffi().new("int64_t[8]")
+        self.period = setting.period * setting.clock_hz / (1 + ppm * MICROSECOND)  # clocks of the core
+        self.begun = float(engine.clock)
+        self.calls = 0
+        self.events = [engine.drain()]
+
+    def check(self) -> None:
+        """Raise DriverError for what is wrong."""
+        error = self._lib.passo_servo_check(self.c, self.driver.c, self.options)
+        if error:
+            raise DriverError("servo_check", error, f"problem {self.c.problem}, axis {self.c.axis}")
+
+    def start(self) -> None:
+        """Take over from rest."""
+        self._call("start", self._lib.passo_servo_start(self.c))
+        self.begun, self.calls = float(self.engine.clock), 0
+
+    def wait_until(self, clock: float) -> None:
+        """Let time pass."""
+        while self.engine.clock < round(clock):
+            self.engine.run(round(clock) - self.engine.clock)
+            self.events.append(self.engine.drain())
+
+    def call(self, places: Sequence[float], late: float = 0) -> None:
+        """The next call of the thread, in mm, late by some seconds."""
+        self.wait_until(self.begun + self.calls * self.period + late * self.setting.clock_hz)
+        for axis, place in enumerate(places):
+            self._commands[axis] = round(place * self.setting.scale * UNIT)
+        self.calls += 1
+        self._call("write", self._lib.passo_servo_write(self.c, self._commands))
+
+    def stop(self) -> None:
+        """A soft stop."""
+        self._call("stop", self._lib.passo_servo_stop(self.c))
+
+    @property
+    def pins(self) -> np.ndarray:
+        """All events so far."""
+        self.events.append(self.engine.drain())
+        self.events = [np.concatenate(self.events)]
+        return self.events[0]
+
+    def _call(self, name: str, error: int) -> None:
+        if error:
+            raise DriverError(f"servo_{name}", error)
+
+
+@dataclass
+class Run:
+    """A motion and what became of it."""
+
+    setting: Setting
+    lag: int
+    pins: np.ndarray
+    begun: float  # clocks
+    period: float  # of the thread, clocks of the core
+    places: np.ndarray  # commands, call x axis
+    depths: np.ndarray
+    trims: np.ndarray
+    words: int  # on the wire since call STEADY
+    slowed: int
+    positions: list[int]
+    cause: str
+
+    @property
+    def commands(self) -> np.ndarray:
+        """The commands in steps, call x axis."""
+        return np.floor(self.places * self.setting.scale + 0.5).astype(int)
+
+    def at(self, axis: int, clocks: np.ndarray) -> np.ndarray:
+        """Steps of an axis up to these clocks."""
+        found = np.concatenate([[0], np.cumsum(moves_of(self.pins, axis))])
+        return found[np.searchsorted(self.pins["clock"], clocks, "right")]
+
+    def passes(self, tick: int = 32) -> np.ndarray:
+        """Periods after its command at which all axes are within a step of its place together; NaN: never.
+
+        Each is sought from the time of the one before; places at which the axes rest are left out.
+        """
+        times = np.arange(int(self.pins["clock"][0]), int(self.pins["clock"][-1]) + 1, tick)
+        steps = np.stack([self.at(axis, times) for axis in range(self.setting.axes)], axis=1)
+        commands, begin, window = self.commands, 0, round(4 * self.period / tick)
+        found = np.full(len(commands), np.nan)
+        for call in range(1, len(commands)):
+            if np.array_equal(commands[call], commands[call - 1]):
+                continue
+            for first in range(begin, len(times), window):
+                off = np.abs(steps[first : first + window] - commands[call]).max(axis=1)
+                if off.min() <= 1:
+                    begin = first + int(off.argmin())
+                    found[call] = (times[begin] - self.begun) / self.period - call
+                    break
+            else:
+                return found
+        return found
+
+    @property
+    def moved(self) -> np.ndarray:
+        """Calls whose command differs from the one before."""
+        return np.flatnonzero(np.any(np.diff(self.commands, axis=0, prepend=self.commands[:1]) != 0, axis=1))
+
+    @property
+    def hardest(self) -> float:
+        """The highest acceleration of an axis over 2 to 20 ms, mm/s^2."""
+        windows = (0.002, 0.005, 0.01, 0.02)
+        return max(self.acceleration(axis, window) for axis in range(self.setting.axes) for window in windows)
+
+    @property
+    def made(self) -> list[int]:
+        """Steps at the pins."""
+        return [int(moves_of(self.pins, axis).sum()) for axis in range(self.setting.axes)]
+
+    def acceleration(self, axis: int, window: float) -> float:
+        """The highest one over some seconds, mm/s^2, less what the rounding of steps can make.
+
+        Commands are rounded to steps, and steps to their places in a line: each position by up to one step.
+        """
+        clock_hz, scale = self.setting.clock_hz, self.setting.scale
+        length = round(window * clock_hz)
+        first, last = int(self.pins["clock"][0]), int(self.pins["clock"][-1])
+        times = np.arange(first, last + 2 * length, length // 8)
+        place = self.at(axis, times)
+        change = np.abs(place[16:] - 2 * place[8:-8] + place[:-16])
+        return float(max(0, change.max() - 4)) / scale / window**2
+
+
+def waves(axes: int, seconds: float, speed: float = SPEED, acceleration: float = ACCELERATION / 2) -> Command:
+    """Sines from rest to rest, of a different pace per axis; each comes near one of the two limits."""
+    grid = np.linspace(0, seconds, round(seconds * 2000) + 1)
+    window = np.clip(np.minimum(grid, seconds - grid) / (0.2 * seconds), 0, 1)
+    window = window**3 * (10 - 15 * window + 6 * window**2)
+    shapes = [window * np.sin(2 * np.pi * (0.8 + 1.1 * axis) * grid) for axis in range(axes)]
+    ratios = [
+        min(speed / np.abs(np.gradient(v, grid)).max(), acceleration / np.abs(second(v, grid)).max())
+        for v in shapes
+    ]
+    places = np.stack([0.98 * ratio * shape for ratio, shape in zip(ratios, shapes, strict=True)], axis=1)
+
+    def at(time: float) -> list[float]:
+        return [float(np.interp(time, grid, places[:, axis])) for axis in range(axes)]
+
+    return at
+
+
+def second(values: np.ndarray, grid: np.ndarray) -> np.ndarray:
+    """Its second derivative."""
+    return np.gradient(np.gradient(values, grid), grid)
+
+
+def gaps(
+    seed: int, setting: Setting, seconds: float, count: int, size: tuple[float, float]
+) -> Callable[[int], float]:
+    """Wakes that are late by up to 1 ms, and `count` gaps of `size` s, after which the calls catch up."""
+    rng = random.Random(seed)
+    at = set(rng.sample(range(100, round(seconds / setting.period)), count))
+    until = 0.0
+
+    def late(call: int) -> float:
+        nonlocal until
+        if call in at:
+            until = max(until, call * setting.period + rng.uniform(*size))
+        return max(rng.uniform(0, 0.001), until - call * setting.period)
+
+    return late
+
+
+def run(
+    setting: Setting,
+    seconds: float,
+    command: Command,
+    ppm: float = 0,
+    late: Callable[[int], float] = lambda call: 0,
+    noise: Noise | None = None,
+    settle: float = 1,
+    die: int = 1 << 30,
+) -> Run:
+    """Follow a command; `late`: seconds by which a call comes late, after which the thread catches up.
+
+    `die`: the number of the call after which there are no more, nor any frame for a second.
+    """
+    with model_engine(setting.core, setting.clock_hz) as engine:
+        servo = Servo(engine, setting, ppm, noise)
+        servo.start()
+        words, count = 0, min(die, round((seconds + settle) / setting.period))
+        places, depths, trims = np.zeros((count, setting.axes)), np.zeros(count), np.zeros(count)
+        for call in range(count):
+            words = servo.wire.words if call == STEADY else words
+            places[call] = command(min(call * setting.period, seconds))
+            servo.call(places[call], late(call))
+            servo.driver.positions()
+            depths[call], trims[call] = servo.c.depth, servo.c.trim
+        sent = servo.wire.words - words
+        if count < die:
+            servo.stop()
+        servo.wait_until(engine.clock + setting.clock_hz * (1 if count == die else 0.5))
+        return Run(
+            setting,
+            servo.c.lag,
+            servo.pins,
+            servo.begun,
+            servo.period,
+            places,
+            depths,
+            trims,
+            sent,
+            servo.c.slowed,
+            servo.driver.positions()[: setting.axes],
+            Cause(servo.driver.snapshot().cause).name,
+        )
+
+
+@dataclass(frozen=True)
+class Figures:
+    """What was measured."""
+
+    lag: int  # periods
+    late: float  # periods by which a place is passed after its command, at most
+    lost: int  # steps
+    hardest: float  # mm/s^2, in step
+    trim_step: float  # ppm by which a line differs from the one before, at most, by the loop
+    gaps_hardest: float
+    gaps_slowed: int
+    gaps_off: bool  # a place was not passed
+    flips: int
+    causes: dict[str, int]  # of the stops after a death
+    deaths_hardest: float
+    share: float  # of a wire of 4 MHz, six axes at 1 kHz
+    bytes_per_call: float  # of an axis
+    following: float  # mm, the greatest following error
+    one_period: float  # mm, the same of a lag of one period
+    hour_lost: int
+    hour_late: int  # lines that the queue differs from the lag
+
+
+def measure(seed: int, seconds: float = 10, count: int = 50, deaths: int = 20, hour: float = 3600) -> Figures:
+    """Run everything; `count` gaps."""
+    setting, command = Setting(), waves(AXES, seconds)
+    rng = random.Random(seed)
+    wakes = gaps(seed, setting, seconds, 0, GAP)
+    noise = Noise(rng, ERRORS)
+    steady = [run(setting, seconds, command, ppm, wakes) for ppm in (-PPM, PPM)]
+    steady.append(run(setting, seconds, command, PPM, wakes, noise))
+    late = run(setting, seconds, command, PPM, gaps(seed, setting, seconds, count, GAP), settle=4)
+    ends = []
+    for _ in range(deaths):
+        end = run(setting, seconds, command, rng.choice((-PPM, PPM)), wakes, die=rng.randrange(200, 3000))
+        ends.append((end.cause, end.hardest, lost(end)))
+    wire = run(Setting(axes=6, scale=80, inputs=False), 2, waves(6, 2))
+    slow = Setting(
+        axes=2, scale=50, period=0.02, clock_hz=1_000_000, inputs=False, speed=50, acceleration=400
+    )
+    long = run(slow, hour, lambda time: [20 * np.sin(time), 7 * np.sin(2.3 * time)], PPM)
+    passed = [found.passes()[found.moved] for found in steady]
+    speeds = np.abs(np.diff(steady[0].places, axis=0)).max()
+    causes = [cause for cause, _, _ in ends]
+    return Figures(
+        steady[0].lag,
+        max(np.inf if np.isnan(one).any() else float(one.max()) for one in passed),
+        max(*(lost(found) for found in (*steady, late)), *(steps for _, _, steps in ends)),
+        max(found.hardest for found in steady),
+        max(float(np.abs(np.diff(found.trims)).max()) for found in steady) / 1000,
+        late.hardest,
+        late.slowed,
+        bool(np.isnan(late.passes()[late.moved]).any()),
+        noise.flips,
+        {cause: causes.count(cause) for cause in sorted(set(causes))},
+        max(hardest for _, hardest, _ in ends),
+        wire.words * 32 / SCLK_HZ / ((len(wire.places) - STEADY) * PERIOD),
+        wire.words * 4 / (len(wire.places) - STEADY) / 6,
+        max(following(found) for found in steady),
+        float(speeds),
+        lost(long),
+        int(abs(np.median(long.depths[-500:]) - long.lag)),
+    )
+
+
+def lost(found: Run) -> int:
+    """Steps by which pins, core and, at the end of a command, its last place differ."""
+    off = [abs(a - b) for a, b in zip(found.positions, found.made, strict=True)]
+    if found.cause == Cause.STOP.name:
+        off += [abs(a - b) for a, b in zip(found.made, found.commands[-1].tolist(), strict=True)]
+    return max(off)
+
+
+def following(found: Run) -> float:
+    """The greatest distance of an axis from its command at the time of a call, mm."""
+    calls = np.arange(len(found.places))
+    clocks = (found.begun + calls * found.period).astype(np.int64)
+    return max(
+        float(np.abs(found.at(axis, clocks) - found.commands[:, axis]).max()) / found.setting.scale
+        for axis in range(found.setting.axes)
+    )
+
+
+def good(found: Figures) -> bool:
+    """All promises are kept."""
+    exact = found.lost == found.hour_lost == 0 and not found.gaps_off and found.hour_late <= 1
+    soft = found.hardest <= ACCELERATION / 2 * ROUNDING
+    soft = soft and max(found.gaps_hardest, found.deaths_hardest) <= ACCELERATION * ROUNDING
+    in_step = found.late <= found.lag + LATE and found.trim_step < ROUNDING_PPM
+    return (
+        exact and soft and in_step and found.share <= SHARE_MAX and set(found.causes) == {Cause.WATCHDOG.name}
+    )
+
+
+def short_lines(count: int) -> str:
+    """A program of short lines on a curve in the middle of the machine, and its end at X100 Y60."""
+    angles = np.linspace(0, 40 * np.pi, count)
+    radii = 40 + 8 * np.sin(7.3 * angles)
+    points = [
+        f"X{60 + radius * np.cos(angle):.4f} Y{60 + radius * np.sin(angle):.4f}"
+        for radius, angle in zip(radii, angles, strict=True)
+    ]
+    return "\n".join(
+        ["G21 G90 G64 P0.01", "G1 F6000 Z74", *(f"G1 {p}" for p in points), "G1 X100 Y60", "M2", ""]
+    )
+
+
+def linuxcnc() -> bool:
+    """Programs in LinuxCNC; prints figures."""
+    from tests.helpers.linuxcnc import run_linuxcnc
+
+    kept = True
+    for name, program, engine in (
+        ("20,000 short lines", short_lines(20_000), "model"),
+        ("200 short lines, model and Verilated core", short_lines(200), "both"),
+    ):
+        found = run_linuxcnc(program, engine)
+        done = found.homed and found.ended and not found.said
+        exact = done and np.abs(np.array(found.positions) - [100, 60, 74]).max() < 1e-9
+        kept = kept and exact
+        print(
+            f"LinuxCNC, {name}: {'end exact' if exact else 'WRONG'}; {found.said or 'no fault'}", flush=True
+        )
+        print(f"    following error at most {max(found.ferror or [np.nan]):.2f} mm", flush=True)
+    return kept
+
+
+def main() -> int:
+    """Print the figures; 1 if one of them is not as promised."""
+    found = measure(int(sys.argv[1]) if len(sys.argv) > 1 else 1)
+    for line in (
+        f"clocks {PPM} ppm apart, wakes late by up to 1 ms, bit errors of {ERRORS:g} ({found.flips} bits):",
+        f"    every place within a step at most {found.late:.1f} periods after its command; lag {found.lag}",
+        f"    steps lost: {found.lost}; acceleration {found.hardest:.0f} of {ACCELERATION:g} mm/s^2",
+        f"    the loop changes a line by at most {found.trim_step:.1f} ppm; rounding: {ROUNDING_PPM:g} ppm",
+        f"gaps of {GAP[0]:g} to {GAP[1]:g} s slow {found.gaps_slowed} times: {found.gaps_hardest:.0f} mm/s^2",
+        f"deaths of the host: {found.causes}; {found.deaths_hardest:.0f} mm/s^2",
+        f"six axes at 1 kHz: {found.share:.1%} of 4 MHz, {found.bytes_per_call:.1f} bytes per axis and call",
+        f"following error {found.following:.2f} mm; with a lag of one period {found.one_period:.2f} mm",
+        f"after an hour: steps lost {found.hour_lost}; lines off the lag {found.hour_late}",
+    ):
+        print(line, flush=True)
+    kept = good(found)
+    if shutil.which("linuxcnc"):
+        kept = linuxcnc() and kept
+    return int(not kept)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

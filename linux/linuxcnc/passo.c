@@ -1,0 +1,542 @@
+/* SPDX-License-Identifier: MIT
+ * HAL component of LinuxCNC: a Passo core behind the servo thread. The motion is in passo_servo.h; here are
+ * the pins and the sentences.
+ *
+ *     loadrt passo device=/dev/spidev0.0 axes=3
+ *     addf passo.0.read servo-thread
+ *     ... motion-command-handler, motion-controller
+ *     addf passo.0.write servo-thread
+ * docs/hosts.md has the table of pins.
+ */
+#include <math.h>
+#include <stdatomic.h>
+#include <stdint.h>
+
+#include "hal.h"
+#include "passo.h"
+#include "passo_inputs.h"
+#include "passo_linux.h"
+#include "passo_linux_private.h"
+#include "passo_outputs.h"
+#include "passo_servo.h"
+#include "passo_words.h"
+#include "rtapi.h"
+#include "rtapi_app.h"
+
+MODULE_LICENSE("Dual MIT/GPL");
+MODULE_DESCRIPTION("Passo motion coprocessor");
+
+static char *device = "/dev/spidev0.0";
+RTAPI_MP_STRING(device, "/dev/spidevB.C, or unix:PATH of passo serve");
+static int axes = 3;
+RTAPI_MP_INT(axes, "stepgens, the first axes of the core");
+static int speed_hz = 0;
+RTAPI_MP_INT(speed_hz, "of SCLK; 0: 4 MHz");
+static int clock_hz = 0;
+RTAPI_MP_INT(clock_hz, "of a core that does not tell its clock");
+static int buffer = 0;
+RTAPI_MP_INT(buffer, "periods by which the thread may be late without effect; 0: 5");
+static int watchdog_ms = 500;
+RTAPI_MP_INT(watchdog_ms, "after which a core with inputs stops without a host; 0: never");
+
+#define PASSO_NAME "passo"
+#define PREFIX PASSO_NAME ".0."
+#define ONE 4294967296.0 /* 2^32 */
+#define NS 1e-9
+#define MS 1000u  /* microseconds; also nanoseconds of a microsecond */
+#define GROUPS 4u /* inputs of an axis: limits low and high, home, alarm */
+#define INPUTS_MAX (GROUPS * PASSO_AXES_MAX + 1u)
+#define OUTPUTS 8u
+#define INPUT_WORDS 5u /* from INPUT_LEVELS to TRIGGER_STATE */
+#define BYTE 8u
+#define EXIT_WAITS 2000u
+
+struct stepgen {
+	hal_float_t *command, *feedback, *velocity;
+	hal_s32_t *counts;
+	hal_bit_t *enable;
+	hal_float_t scale, maxvel, maxaccel;
+	hal_u32_t steplen, stepspace, dirsetup, dirhold;
+	hal_bit_t step_invert, dir_invert, enable_invert, home_invert, limit_invert, alarm_invert;
+	int32_t before; /* counts */
+};
+
+struct pins {
+	struct stepgen stepgen[PASSO_AXES_MAX];
+	hal_bit_t *input[INPUTS_MAX], *input_not[INPUTS_MAX];
+	hal_bit_t *output[OUTPUTS];
+	hal_float_t *power;
+	hal_bit_t *has_bit, *fault;
+	hal_s32_t *state, *cause, *depth;
+	hal_u32_t *lag, *slowed, *frames, *retries;
+	hal_float_t *trim;
+};
+
+/* Off; on; after a fault, until all stepgens are disabled. */
+enum phase { OFF, ON, FAULTY };
+
+static int component;
+static struct pins *pins;
+static struct passo passo;
+static struct passo_host host;
+static struct passo_linux linux_host;
+static struct passo_servo servo;
+static enum phase phase;
+static bool drives_due; /* the drives are to be switched off, when at rest */
+static long period_ns;
+static unsigned inputs; /* of the core; 0: none */
+static bool outputs;
+/* A call may take longer than HAL waits before it unloads the component. */
+static atomic_bool leaving;
+static atomic_uint under_way;
+
+/* ---------------------------------------------------------------------------------------- sentences ---- */
+
+#define TELL(...) rtapi_print_msg(RTAPI_MSG_ERR, PASSO_NAME ": " __VA_ARGS__)
+
+static void set_fault(void)
+{
+	phase = FAULTY;
+	*pins->fault = 1;
+}
+
+static void tell_error(const char *doing, enum passo_error error)
+{
+	const struct passo_snapshot *snapshot = passo_snapshot(&passo);
+
+	TELL("%s: %s: %s Disable and enable the machine to go on.\n", doing, passo_error_name(error),
+	    passo_error_text(error));
+	if (snapshot->cause == PASSO_CAUSE_WATCHDOG)
+		*pins->has_bit = 1;
+	set_fault();
+}
+
+static void tell_problem(void)
+{
+	const unsigned axis = servo.axis;
+
+	switch (servo.problem) {
+	case PASSO_SERVO_PERIOD:
+		TELL("the servo period is %ld ns: set SERVO_PERIOD to %u to %u\n", period_ns,
+		    PASSO_SERVO_PERIOD_MIN, PASSO_SERVO_PERIOD_MAX);
+		break;
+	case PASSO_SERVO_AXES:
+		TELL("the core has %u axes: load it with axes=1 to %u\n", passo_machine(&passo)->axes,
+		    passo_machine(&passo)->axes);
+		break;
+	case PASSO_SERVO_SPEED:
+		TELL("stepgen.%02u.maxvel is too low: set it to the MAX_VELOCITY of the joint\n", axis);
+		break;
+	case PASSO_SERVO_ACCELERATION:
+		TELL("stepgen.%02u.maxaccel is too low: set it to twice the MAX_ACCELERATION of the joint\n",
+		    axis);
+		break;
+	case PASSO_SERVO_PINS:
+		TELL("stepgen.%02u.maxvel needs more steps than steplen and stepspace allow: lower one of "
+		     "them\n",
+		    axis);
+		break;
+	default:
+		TELL("to stop from maxvel within maxaccel takes %u periods, the core has %u lines: raise "
+		     "maxaccel\n",
+		    servo.stop, servo.places);
+	}
+	set_fault();
+}
+
+/* --------------------------------------------------------------------------------------------- on ---- */
+
+static bool is_enabled(void)
+{
+	bool found = false;
+
+	for (int axis = 0; axis < axes; axis++)
+		found = found || *pins->stepgen[axis].enable;
+	return found;
+}
+
+/* false: said what is wrong. */
+static bool check_axis(int axis)
+{
+	const struct stepgen *own = &pins->stepgen[axis];
+
+	if (!isfinite(own->scale) || own->scale <= 0) {
+		TELL("stepgen.%02d.position-scale is %g: set it to the steps per unit, above 0; dir-invert "
+		     "turns the "
+		     "axis around\n",
+		    axis, own->scale);
+	} else if (!isfinite(own->maxvel) || own->maxvel <= 0 || own->maxvel * own->scale > INT32_MAX) {
+		TELL("stepgen.%02d.maxvel is %g: set it to the MAX_VELOCITY of the joint\n", axis,
+		    own->maxvel);
+	} else if (!isfinite(own->maxaccel) || own->maxaccel <= 0 || own->maxaccel * own->scale > INT32_MAX) {
+		TELL("stepgen.%02d.maxaccel is %g: set it to twice the MAX_ACCELERATION of the joint\n", axis,
+		    own->maxaccel);
+	} else {
+		return true;
+	}
+	set_fault();
+	return false;
+}
+
+static enum passo_error configure_axis(int axis, struct passo_servo_options *options)
+{
+	const struct stepgen *own = &pins->stepgen[axis];
+	const struct passo_axis_config config = {
+	    .step_high_ns = own->steplen,
+	    .step_low_ns = own->stepspace,
+	    .dir_setup_ns = own->dirsetup,
+	    .dir_hold_ns = own->dirhold,
+	    .step_inverted = own->step_invert,
+	    .direction_inverted = own->dir_invert,
+	    .enable_inverted = own->enable_invert,
+	};
+	const struct passo_input_config switches = {
+	    .limit_low_inverted = own->limit_invert,
+	    .limit_high_inverted = own->limit_invert,
+	    .home_inverted = own->home_invert,
+	    .alarm_inverted = own->alarm_invert,
+	};
+	enum passo_error error = passo_configure_axis(&passo, (uint8_t)axis, &config);
+
+	if (error == PASSO_OK && inputs > 0)
+		error = passo_configure_inputs(&passo, (uint8_t)axis, &switches);
+	options->axis[axis].speed = (uint64_t)(own->maxvel * own->scale * ONE);
+	options->axis[axis].acceleration = (uint64_t)(own->maxaccel * own->scale * ONE);
+	return error;
+}
+
+static enum passo_error configure(void)
+{
+	struct passo_servo_options options = {
+	    .period_ns = (uint32_t)period_ns, .buffer = (uint32_t)buffer, .axes = (uint8_t)axes};
+	struct passo_snapshot snapshot;
+	enum passo_error error = passo_read_state(&passo, &snapshot);
+
+	if (error == PASSO_OK && snapshot.state != PASSO_STATE_IDLE)
+		error = passo_clear(&passo);
+	if (error == PASSO_OK && inputs > 0)
+		error = passo_clear_estop(&passo);
+	for (int axis = 0; axis < axes && error == PASSO_OK; axis++)
+		error = configure_axis(axis, &options);
+	return error == PASSO_OK ? passo_servo_check(&servo, &passo, &options) : error;
+}
+
+static void switch_on(void)
+{
+	for (int axis = 0; axis < axes; axis++) {
+		if (!check_axis(axis))
+			return;
+	}
+	enum passo_error error = configure();
+	if (error == PASSO_ERROR_ARGUMENT && servo.problem != PASSO_SERVO_OK) {
+		tell_problem();
+		return;
+	}
+	if (error == PASSO_OK)
+		error = passo_servo_start(&servo);
+	for (int axis = 0; axis < axes && error == PASSO_OK; axis++) {
+		if (*pins->stepgen[axis].enable)
+			error = passo_enable(&passo, (uint8_t)axis, true);
+	}
+	*pins->lag = servo.lag;
+	if (error == PASSO_OK)
+		phase = ON;
+	else if (error != PASSO_ERROR_MOVING) /* until it is at rest */
+		tell_error("enable", error);
+}
+
+/* -------------------------------------------------------------------------------------------- off ---- */
+
+static void switch_off(void)
+{
+	if (passo_servo_is_on(&servo))
+		passo_servo_stop(&servo);
+	phase = OFF;
+	*pins->fault = 0;
+	drives_due = true;
+}
+
+/* The drives and outputs, once the axes are at rest. */
+static void go_off(void)
+{
+	enum passo_error error = PASSO_OK;
+
+	passo_poll(&passo);
+	if (!drives_due)
+		return;
+	if (passo_snapshot(&passo)->state == PASSO_STATE_STOPPED)
+		error = passo_clear(&passo);
+	for (int axis = 0; axis < axes && error == PASSO_OK; axis++)
+		error = passo_enable(&passo, (uint8_t)axis, false);
+	if (error == PASSO_OK && outputs)
+		error = passo_set_levels(&passo, 0);
+	drives_due = error == PASSO_ERROR_MOVING;
+}
+
+/* ---------------------------------------------------------------------------------------- periods ---- */
+
+static uint32_t output_word(void)
+{
+	struct passo_output output = {0};
+	uint32_t word = 0;
+
+	if (!outputs)
+		return 0;
+	for (unsigned i = 0; i < OUTPUTS; i++)
+		output.levels |= (uint8_t)((unsigned)(*pins->output[i] != 0) << i);
+	if (*pins->power > 0)
+		output.power =
+		    *pins->power < 1 ? (uint32_t)(*pins->power * PASSO_POWER_FULL) : PASSO_POWER_FULL;
+	return passo_output_word(&passo, &output, &word) == PASSO_OK ? word : 0;
+}
+
+static void command(void)
+{
+	int64_t places[PASSO_AXES_MAX];
+
+	for (int axis = 0; axis < axes; axis++) {
+		const struct stepgen *own = &pins->stepgen[axis];
+		const double steps = *own->command * own->scale;
+
+		places[axis] = servo.place[axis];
+		if (!*own->enable)
+			continue;
+		if (!(fabs(steps) < INT32_MAX)) {
+			TELL("stepgen.%02d.position-cmd is %g: beyond 2^31 steps\n", axis, *own->command);
+			passo_servo_stop(&servo);
+			set_fault();
+			return;
+		}
+		places[axis] = (int64_t)(steps * ONE);
+	}
+	servo.output = output_word();
+	const enum passo_error error = passo_servo_write(&servo, places);
+	if (error != PASSO_OK)
+		tell_error("motion", error);
+}
+
+/* In simulated time a period passes between two calls, frames included. */
+static void pass_period(long period)
+{
+	static uint32_t due;
+	const uint32_t left =
+	    (due += (uint32_t)(period / (long)MS)) - host.hardware.microseconds(&linux_host);
+
+	if (left > (uint32_t)period)
+		due -= left; /* it is late, or begins */
+	else
+		host.hardware.wait(&linux_host, left);
+}
+
+static void write_pins(long period)
+{
+	if (period_ns != 0 && period != period_ns && phase == ON) {
+		TELL("the servo period changes from %ld to %ld ns: let all functions of passo run in one "
+		     "thread\n",
+		    period_ns, period);
+		passo_servo_stop(&servo);
+		set_fault();
+	}
+	period_ns = period;
+	if (phase != OFF && !is_enabled())
+		switch_off();
+	else if (phase == OFF && is_enabled() && !drives_due && !*pins->has_bit)
+		switch_on();
+	if (phase == ON)
+		command();
+	else
+		go_off();
+	*pins->depth = (hal_s32_t)servo.depth;
+	*pins->slowed = servo.slowed;
+	*pins->trim = servo.trim * 1e-3;
+	if (linux_host.served && !linux_host.real_time)
+		pass_period(period);
+}
+
+static void read_inputs(void)
+{
+	uint32_t words[INPUT_WORDS];
+
+	if (passo_host_read(
+		&host, PASSO_ADDRESS_CHANNEL_BASE + PASSO_CHANNEL_INPUT_LEVELS, words, INPUT_WORDS)
+	    != PASSO_OK)
+		return;
+	for (unsigned i = 0; i < inputs; i++) {
+		const bool level =
+		    i + 1u == inputs
+			? (words[INPUT_WORDS - 1u] >> PASSO_CHANNEL_TRIGGER_STATE_PROBE_LSB & 1u) != 0u
+			: (words[0] >> (i % GROUPS * BYTE + i / GROUPS) & 1u) != 0u;
+		*pins->input[i] = level;
+		*pins->input_not[i] = !level;
+	}
+}
+
+static void read_pins(long period)
+{
+	int32_t counts[PASSO_AXES_MAX];
+	const struct passo_snapshot *snapshot = passo_snapshot(&passo);
+
+	if (passo_positions(&passo, counts) == PASSO_OK) {
+		for (int axis = 0; axis < axes; axis++) {
+			struct stepgen *own = &pins->stepgen[axis];
+			const double scale = own->scale > 0 ? own->scale : 1;
+
+			*own->counts = counts[axis];
+			*own->feedback = counts[axis] / scale;
+			*own->velocity = (counts[axis] - own->before) / (scale * (double)period * NS);
+			own->before = counts[axis];
+		}
+	}
+	if (inputs > 0)
+		read_inputs();
+	*pins->state = (hal_s32_t)snapshot->state;
+	*pins->cause = (hal_s32_t)snapshot->cause;
+	*pins->frames = host.counters.frames;
+	*pins->retries = host.counters.retries;
+}
+
+/* A function of HAL: `arg` is read_pins() or write_pins(). */
+static void call(void *arg, long period)
+{
+	void (*const *const function)(long) = arg;
+
+	atomic_fetch_add(&under_way, 1u);
+	if (!atomic_load(&leaving))
+		(*function)(period);
+	atomic_fetch_sub(&under_way, 1u);
+}
+
+/* ------------------------------------------------------------------------------------------- load ---- */
+
+static int make_stepgen(int axis)
+{
+	struct stepgen *own = &pins->stepgen[axis];
+	const char *const name = PREFIX "stepgen.%02d.%s";
+	int failed = 0;
+
+	failed |= hal_pin_float_newf(HAL_IN, &own->command, component, name, axis, "position-cmd");
+	failed |= hal_pin_float_newf(HAL_OUT, &own->feedback, component, name, axis, "position-fb");
+	failed |= hal_pin_float_newf(HAL_OUT, &own->velocity, component, name, axis, "velocity-fb");
+	failed |= hal_pin_s32_newf(HAL_OUT, &own->counts, component, name, axis, "counts");
+	failed |= hal_pin_bit_newf(HAL_IN, &own->enable, component, name, axis, "enable");
+	failed |= hal_param_float_newf(HAL_RW, &own->scale, component, name, axis, "position-scale");
+	failed |= hal_param_float_newf(HAL_RW, &own->maxvel, component, name, axis, "maxvel");
+	failed |= hal_param_float_newf(HAL_RW, &own->maxaccel, component, name, axis, "maxaccel");
+	failed |= hal_param_u32_newf(HAL_RW, &own->steplen, component, name, axis, "steplen");
+	failed |= hal_param_u32_newf(HAL_RW, &own->stepspace, component, name, axis, "stepspace");
+	failed |= hal_param_u32_newf(HAL_RW, &own->dirsetup, component, name, axis, "dirsetup");
+	failed |= hal_param_u32_newf(HAL_RW, &own->dirhold, component, name, axis, "dirhold");
+	failed |= hal_param_bit_newf(HAL_RW, &own->step_invert, component, name, axis, "step-invert");
+	failed |= hal_param_bit_newf(HAL_RW, &own->dir_invert, component, name, axis, "dir-invert");
+	failed |= hal_param_bit_newf(HAL_RW, &own->enable_invert, component, name, axis, "enable-invert");
+	failed |= hal_param_bit_newf(HAL_RW, &own->home_invert, component, name, axis, "home-invert");
+	failed |= hal_param_bit_newf(HAL_RW, &own->limit_invert, component, name, axis, "limit-invert");
+	failed |= hal_param_bit_newf(HAL_RW, &own->alarm_invert, component, name, axis, "alarm-invert");
+	own->scale = 1;
+	own->steplen = own->stepspace = own->dirsetup = own->dirhold = 5000; /* as those of hostmot2, ns */
+	return failed;
+}
+
+static int make_inputs_and_outputs(void)
+{
+	int failed = 0;
+
+	for (unsigned i = 0; i < inputs; i++) {
+		failed |= hal_pin_bit_newf(HAL_OUT, &pins->input[i], component, PREFIX "gpio.%03u.in", i);
+		failed |=
+		    hal_pin_bit_newf(HAL_OUT, &pins->input_not[i], component, PREFIX "gpio.%03u.in-not", i);
+	}
+	for (unsigned i = 0; outputs && i < OUTPUTS; i++)
+		failed |= hal_pin_bit_newf(HAL_IN, &pins->output[i], component, PREFIX "output.%02u", i);
+	if (outputs)
+		failed |= hal_pin_float_newf(HAL_IN, &pins->power, component, PREFIX "power");
+	return failed;
+}
+
+static int make_pins(void)
+{
+	static void (*const READ)(long) = read_pins;
+	static void (*const WRITE)(long) = write_pins;
+	int failed = 0;
+
+	pins = hal_malloc(sizeof *pins);
+	if (!pins)
+		return -1;
+	*pins = (struct pins){0};
+	for (int axis = 0; axis < axes; axis++)
+		failed |= make_stepgen(axis);
+	failed |= make_inputs_and_outputs();
+	failed |= hal_pin_bit_newf(HAL_IO, &pins->has_bit, component, PREFIX "watchdog.has-bit");
+	failed |= hal_pin_bit_newf(HAL_OUT, &pins->fault, component, PREFIX "fault");
+	failed |= hal_pin_s32_newf(HAL_OUT, &pins->state, component, PREFIX "state");
+	failed |= hal_pin_s32_newf(HAL_OUT, &pins->cause, component, PREFIX "cause");
+	failed |= hal_pin_s32_newf(HAL_OUT, &pins->depth, component, PREFIX "queue.depth");
+	failed |= hal_pin_u32_newf(HAL_OUT, &pins->lag, component, PREFIX "queue.lag");
+	failed |= hal_pin_u32_newf(HAL_OUT, &pins->slowed, component, PREFIX "queue.slowed");
+	failed |= hal_pin_float_newf(HAL_OUT, &pins->trim, component, PREFIX "queue.trim-ppm");
+	failed |= hal_pin_u32_newf(HAL_OUT, &pins->frames, component, PREFIX "link.frames");
+	failed |= hal_pin_u32_newf(HAL_OUT, &pins->retries, component, PREFIX "link.retries");
+	failed |= hal_export_funct(PREFIX "read", call, (void *)&READ, 1, 0, component);
+	failed |= hal_export_funct(PREFIX "write", call, (void *)&WRITE, 1, 0, component);
+	return failed;
+}
+
+/* false: said what is wrong. */
+static bool open_core(void)
+{
+	const struct passo_linux_options options = {
+	    .device = device, .speed_hz = (uint32_t)speed_hz, .axes = (uint8_t)axes};
+	const struct passo_options wanted = {.clock_hz = (uint32_t)clock_hz};
+
+	if (axes < 1 || axes > (int)PASSO_AXES_MAX) {
+		TELL("axes=%d: a core has 1 to %u axes\n", axes, PASSO_AXES_MAX);
+		return false;
+	}
+	if (speed_hz < 0 || clock_hz < 0 || buffer < 0 || watchdog_ms < 0) {
+		TELL("speed_hz, clock_hz, buffer and watchdog_ms are not negative\n");
+		return false;
+	}
+	enum passo_error error = passo_open_linux(&passo, &host, &linux_host, &options, &wanted);
+	if (error == PASSO_ERROR_MOVING) /* of a host that is gone; the stop ends before the first enable */
+		error = passo_stop(&passo);
+	if (error != PASSO_OK && error != PASSO_ERROR_ESTOP && error != PASSO_ERROR_ALARM) {
+		TELL("%s\n", linux_host.problem);
+		return false;
+	}
+	inputs = passo_has_inputs(&passo) ? GROUPS * (unsigned)axes + 1u : 0u;
+	outputs = passo.has_outputs;
+	if (inputs == 0)
+		return true;
+	const uint64_t time = passo_clocks(&passo, (uint32_t)watchdog_ms * MS);
+	if (passo_configure_watchdog(&passo, time, time) == PASSO_OK)
+		return true;
+	TELL("watchdog_ms=%d: at most %u\n", watchdog_ms,
+	    (unsigned)(PASSO_WATCHDOG_CLOCKS_MAX * MS / passo_machine(&passo)->clock_hz));
+	return false;
+}
+
+int rtapi_app_main(void)
+{
+	component = hal_init(PASSO_NAME);
+	if (component < 0)
+		return component;
+	if (!open_core() || make_pins() != 0) {
+		passo_close_linux(&linux_host);
+		hal_exit(component);
+		return -1;
+	}
+	drives_due = true;
+	hal_ready(component);
+	return 0;
+}
+
+void rtapi_app_exit(void)
+{
+	atomic_store(&leaving, true);
+	for (unsigned waits = 0; atomic_load(&under_way) != 0u && waits < EXIT_WAITS; waits++)
+		passo_linux_sleep(NULL, MS);
+	if (passo_servo_is_on(&servo))
+		passo_servo_stop(&servo);
+	passo_close_linux(&linux_host);
+	hal_exit(component);
+}

@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: MIT
+"""A headless LinuxCNC with the component at a simulated core (examples/linuxcnc)."""
+
+import fcntl
+import json
+import os
+import re
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+from passo.grbl_setup import machine_at
+from passo.machine_file import read_machine
+from passo.toolchain import paths
+
+from tests.helpers.serving import serving
+
+COMPONENT = paths.linux / "linuxcnc"
+EXAMPLE = paths.examples / "linuxcnc"
+MODULES = Path("/usr/lib/linuxcnc/modules")
+HEADERS = Path("/usr/include/linuxcnc/hal.h")
+NOBODY = 65534
+SECONDS_MAX = 900
+
+
+@dataclass(frozen=True)
+class Result:
+    """What LinuxCNC saw, and what the pins of the core did."""
+
+    homed: bool
+    ended: bool
+    said: list[str]
+    positions: list[float]
+    ferror: list[float]
+    pins: dict[str, str]
+    events: Any
+    log: str
+
+
+def component() -> Path:
+    """The component, made with its own Makefile; skips without LinuxCNC."""
+    if not HEADERS.exists() or not shutil.which("linuxcnc"):
+        pytest.skip("LinuxCNC is not installed: tools/setup.sh linuxcnc")
+    made = paths.build / "linuxcnc" / "passo.so"
+    made.parent.mkdir(parents=True, exist_ok=True)
+    done = subprocess.run(
+        ["make", "-s", "-C", COMPONENT, "CC=cc -Werror", f"OUT={made}"], capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    return made
+
+
+def installed() -> None:
+    """The component is where LinuxCNC finds it; skips if it may not be put there."""
+    made, place = component(), MODULES / "passo.so"
+    if place.exists() and place.read_bytes() == made.read_bytes():
+        return
+    if not os.access(MODULES, os.W_OK):
+        pytest.skip("the component is not installed: sudo make -C linux/linuxcnc install")
+    shutil.copy(made, place)
+
+
+@contextmanager
+def alone() -> Iterator[Path]:
+    """A folder of the user that runs LinuxCNC, of which a computer has one at a time."""
+    with (Path(tempfile.gettempdir()) / "passo_linuxcnc.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        folder = Path(tempfile.mkdtemp(prefix="passo_linuxcnc_"))
+        try:
+            yield folder
+        finally:
+            shutil.rmtree(folder)
+
+
+def prepare(folder: Path, program: str, device: str, changes: dict[str, str]) -> None:
+    """The example, without its screen, and with changes of its two files."""
+    for source in EXAMPLE.iterdir():
+        text = source.read_text()
+        for old, new in changes.items():
+            text = text.replace(old, new)
+        text = re.sub(r"^DISPLAY = .*", "DISPLAY = ./ui.py", text, flags=re.M)
+        text = re.sub(r"^DEVICE = .*", f"DEVICE = {device}", text, flags=re.M)
+        (folder / source.name).write_text(text)
+    shutil.copy(paths.tests / "linuxcnc" / "ui.py", folder)
+    (folder / "program.ngc").write_text(program)
+    folder.chmod(0o777)
+
+
+def _call(folder: Path, *command: str) -> subprocess.CompletedProcess[str]:
+    # it refuses to run as root
+    user = ["setpriv", f"--reuid={NOBODY}", f"--regid={NOBODY}", "--clear-groups"]
+    return subprocess.run(
+        [*(user if os.geteuid() == 0 else []), *command],
+        cwd=folder,
+        env=os.environ | {"HOME": str(folder)},
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=SECONDS_MAX,
+    )
+
+
+def run_hal(script: str, device: str = "") -> tuple[str, Any]:
+    """What is said to a script of halcmd, and the events of the pins; CORE in it is the device."""
+    installed()
+    with alone() as folder:
+        place = folder / "core"
+        (folder / "script.hal").write_text(script.replace("CORE", device or f"unix:{place}"))
+        folder.chmod(0o777)
+        with machine_at("model", read_machine(EXAMPLE / "machine.toml")) as core:
+            with serving(core, place, keep=True) as server:
+                place.chmod(0o777)
+                done = _call(folder, "halrun", "-f", "script.hal")
+            events = server.events
+        return done.stdout + done.stderr, events
+
+
+def run_linuxcnc(program: str, engine: str = "model", changes: dict[str, str] | None = None) -> Result:
+    """Home and run a program; `changes`: of the text of the example."""
+    installed()
+    with alone() as folder:
+        place = folder / "core"
+        prepare(folder, program, f"unix:{place}", changes or {})
+        machine = read_machine(EXAMPLE / "machine.toml")
+        with machine_at(engine, machine) as core:
+            with serving(core, place, keep=True) as server:
+                place.chmod(0o777)
+                done = _call(folder, "linuxcnc", "machine.ini")
+            events = server.events
+        logs = [file.read_text() for file in folder.glob("linuxcnc_*.txt")]
+        result = folder / "result.json"
+        found = json.loads(result.read_text()) if result.exists() else {}
+        empty = {"homed": False, "ended": False, "said": [], "positions": [], "ferror": [], "pins": {}}
+        return Result(**(empty | found), events=events, log="\n".join([done.stdout, done.stderr, *logs]))

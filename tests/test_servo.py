@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: MIT
+"""linux/passo_servo.h on the C model, judged at the pins: clocks that differ, gaps, deaths, bad settings."""
+
+import random
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from passo.driver import DriverError
+from passo.engine import model_engine
+from passo.registers import Cause, State
+
+from benchmarks.servo import ACCELERATION, LATE, ROUNDING, Run, Servo, Setting, gaps, run, waves
+from tests.helpers.driver_wire import Noise
+
+SETTING = Setting()
+SECONDS = 2.0
+PROBLEMS = ("OK", "PERIOD", "AXES", "SPEED", "ACCELERATION", "PINS", "LAG")
+
+
+def wake(seed: int) -> Callable[[int], float]:
+    """Wakes that are late by up to 1 ms."""
+    rng = random.Random(seed)
+    return lambda call: rng.uniform(0, 0.001)
+
+
+def check_in_step(found: Run) -> None:
+    """Each place is passed by all axes within a step, in order, at most so late; nothing is lost."""
+    late = found.passes()[found.moved]
+    assert not np.isnan(late).any()
+    assert late.max() <= found.lag + LATE
+    assert found.positions == found.made == found.commands[-1].tolist()
+    assert found.slowed == 0
+    assert found.hardest <= ACCELERATION / 2 * ROUNDING
+
+
+@pytest.mark.parametrize("ppm", [-200, 0, 200])
+def test_clocks_that_differ(ppm: int) -> None:
+    """In step, with wakes late by up to 1 ms; the speed changes by less than the rounding of a line."""
+    found = run(SETTING, SECONDS, waves(3, SECONDS), ppm, wake(1))
+    check_in_step(found)
+    substep = 1e9 / (SETTING.period * SETTING.clock_hz / 2)  # ppb of a line
+    assert np.abs(np.diff(found.trims)).max() < substep
+    assert np.abs(found.depths[10:] - found.lag).max() <= LATE
+
+
+def test_the_loop_finds_the_difference_of_the_clocks() -> None:
+    """The trim settles at it, and the depth stays; a slow core shows minutes of it."""
+    setting = Setting(axes=1, period=0.02, clock_hz=1_000_000, scale=10, acceleration=200000, inputs=False)
+    found = run(setting, 900, lambda time: [0.0], -200)
+    assert abs(np.median(found.trims[-5000:]) / 1000 - 200) < 20
+    assert np.abs(np.median(found.depths[-5000:]) - found.lag) <= 1
+
+
+def test_short_gaps_are_invisible() -> None:
+    """Up to the buffer, late wakes included."""
+    late = gaps(2, SETTING, SECONDS, 20, (0.001, 0.004))
+    check_in_step(run(SETTING, SECONDS, waves(3, SECONDS), 200, late))
+
+
+def test_long_gaps_slow_the_path() -> None:
+    """Along the commands, within the acceleration, without a lost step; the lag is then made up."""
+    found = run(SETTING, SECONDS, waves(3, SECONDS), -200, gaps(3, SETTING, SECONDS, 8, (0.02, 0.09)))
+    assert found.slowed > 2
+    assert not np.isnan(found.passes()[found.moved]).any()
+    assert found.positions == found.made == found.commands[-1].tolist()
+    assert ACCELERATION / 2 * ROUNDING < found.hardest <= ACCELERATION * ROUNDING
+    assert found.depths[-1] < found.depths.max() - 5
+
+
+def test_a_thread_that_loses_periods() -> None:
+    """It does not catch up after a gap: the path waits until the core has its lines again."""
+    found = run(SETTING, SECONDS, waves(3, SECONDS), 0, lambda call: 0.06 if call >= 700 else 0.0)
+    assert found.slowed > 0 and found.depths.min() < found.lag / 2
+    assert found.positions == found.made == found.commands[-1].tolist()
+    assert not np.isnan(found.passes()[found.moved]).any()
+    assert found.hardest <= ACCELERATION * ROUNDING
+
+
+def test_bit_errors() -> None:
+    """Frames are sent again; nothing is lost or late."""
+    noise = Noise(random.Random(4), 1e-4)
+    check_in_step(run(SETTING, SECONDS, waves(3, SECONDS), 0, wake(4), noise))
+    assert noise.flips > 10
+
+
+@pytest.mark.parametrize("call", [700, 1133])
+def test_a_host_that_dies(call: int) -> None:
+    """The axes come to rest on the path within the acceleration, then the watchdog stops the core."""
+    found = run(SETTING, SECONDS, waves(3, SECONDS), 0, wake(5), die=call)
+    assert found.cause == Cause.WATCHDOG.name
+    assert found.positions == found.made
+    assert found.hardest <= ACCELERATION * ROUNDING
+    known = found.commands[call - found.lag - LATE : call]
+    parts = np.linspace(0, 1, 128)[:, None, None]
+    path = known[:-1] * (1 - parts) + known[1:] * parts
+    assert np.abs(path - found.positions).max(axis=2).min() <= 1
+    assert np.any(found.positions != found.commands[call - 1])
+
+
+def test_a_command_that_jumps() -> None:
+    """It is approached within speed and acceleration, and reached."""
+    found = run(SETTING, 1.0, lambda time: [0.0 if time < 0.1 else 30.0, 0.0, 0.0 if time < 0.2 else -0.003])
+    assert found.made == [24000, 0, -2]
+    assert found.hardest <= ACCELERATION / 2 * ROUNDING
+
+
+def test_it_goes_on_after_a_stop() -> None:
+    """From where the axes have come to rest."""
+    with model_engine(SETTING.core, SETTING.clock_hz) as engine:
+        servo = Servo(engine, SETTING)
+        with pytest.raises(DriverError, match="NOT_PREPARED"):
+            servo.call([0, 0, 0])
+        servo.start()
+        for call in range(400):
+            servo.call([0.0002 * call * call if call < 200 else 8 + 0.08 * (call - 200), 0, 0])
+        servo.stop()
+        servo.wait_until(engine.clock + SETTING.clock_hz / 2)
+        rest = servo.driver.positions()[0]
+        assert 1000 < rest < 24 * SETTING.scale
+        servo.start()
+        for _ in range(200):
+            servo.call([rest / SETTING.scale, 0, 1])
+        assert servo.driver.snapshot().state == State.RUN
+        assert servo.driver.positions()[:3] == [rest, 0, 1 * SETTING.scale]
+
+
+@pytest.mark.parametrize(
+    ("problem", "change"),
+    [
+        ("PERIOD", {"period": 0.06}),
+        ("PERIOD", {"period": 0.00001}),
+        ("SPEED", {"speed": 0}),
+        ("ACCELERATION", {"acceleration": 0}),
+        ("PINS", {"scale": 8000}),
+        ("LAG", {"acceleration": 200}),
+    ],
+)
+def test_settings_that_cannot_be(problem: str, change: dict[str, float]) -> None:
+    """Each is named, and nothing moves."""
+    setting = Setting(**change)  # type: ignore[arg-type]
+    with (
+        model_engine(SETTING.core, SETTING.clock_hz) as engine,
+        pytest.raises(DriverError, match=f"problem {PROBLEMS.index(problem)}"),
+    ):
+        Servo(engine, setting)
+
+
+def test_an_axis_that_the_core_does_not_have() -> None:
+    with model_engine(SETTING.core, SETTING.clock_hz) as engine:
+        servo = Servo(engine, SETTING)
+        for axes in (0, 4):
+            servo.options.axes = axes
+            with pytest.raises(DriverError, match=f"problem {PROBLEMS.index('AXES')}"):
+                servo.check()
