@@ -39,7 +39,7 @@ module passo_input #(
   // Kept: a LUT for two inputs.
   localparam PAIRS = (WIDTH + 1) / 2;
   (* keep *)
-  wire [PAIRS-1:0] changes;
+  wire [  PAIRS-1:0] changes;
   wire [2*PAIRS-1:0] each_changes = {{(2 * PAIRS - WIDTH) {1'b0}}, first ^ second};
   genvar pair;
   generate

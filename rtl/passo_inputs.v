@@ -81,7 +81,7 @@ module passo_inputs #(
 
   integer i;
   always @(posedge clk) begin
-    known     <= select && bus_address[7:3] == CHANNEL_INPUT_LEVELS[7:3];
+    known <= select && bus_address[7:3] == CHANNEL_INPUT_LEVELS[7:3];
     for (i = 0; i < 8; i = i + 1) reads[i] <= bus_read && known && number == i[2:0];
   end
 

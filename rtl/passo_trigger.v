@@ -47,8 +47,8 @@ module passo_trigger #(
   // The source among those of all axes: as many bits of `axis` as there are axes, and of `source` the lower two, which
   // tell all but limit_low and index.
   localparam AXIS_BITS = AXES > 4 ? 3 : AXES > 2 ? 2 : 1;
-  wire [(1<<AXIS_BITS)-1:0] of_axis[0:3];
-  wire [3:0] of_kind;
+  wire [(1<<AXIS_BITS)-1:0] of_axis [0:3];
+  wire [               3:0] of_kind;
   genvar kind;
   generate
     for (kind = 0; kind < 4; kind = kind + 1) begin : g_kind

@@ -237,8 +237,8 @@ static inline bool passo_path_is_strong(const struct passo_path_item *item)
 	return passo_path_halves(item) > 1 && item->curve.strong;
 }
 
-/* Steps of a strong half end at a half, a quarter and an eighth of its length, however much of it is left: a ramp
- * for each of them is enough. */
+/* Steps of a strong half end at a half, a quarter and an eighth of its length, however much of it is left: a
+ * ramp for each of them is enough. */
 static inline uint64_t passo_path_longest_step(const struct passo_path_item *item)
 {
 	return (uint64_t)item->substeps << 30;
