@@ -143,6 +143,8 @@ RANDOM = {
     1: "a fast line in a curve between two slower ones, limited by its bends, not by their feeds",
     4: "a ramp that comes down over less than its length, because it may not be steeper",
     7: "the same, begun with what the ramp before has left of a steeper line",
+    6: "the way down to a corner, once it is within what had been a level part before it",
+    8: "the steps of a strong curve: ever shorter ramps left the core without any",
     18: "constant speed behind a corner, for as long as the speed there needs it, not that of later ramps",
 }
 

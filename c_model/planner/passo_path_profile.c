@@ -220,9 +220,12 @@ static unsigned fall_evenly(struct passo_path_part *parts, unsigned count, uint6
 		return count;
 	const uint64_t both = flat->length + down->length, most = passo_path_smaller(both, over);
 	const uint64_t steep = most - flat->length, from = count > 2 ? parts[count - 3].square : square;
-	const struct passo_path_part last = {PASSO_PATH_DOWN, most, flat->square,
-	    passo_path_larger(passo_mul_div(down->slope, steep, most), 1), .early = false};
+
 	down->square = flat->square + passo_mul_div(from - flat->square, steep, down->length);
+	/* all of it, also where it is within the level part already */
+	const uint64_t needed = passo_mul_div_ceil(down->square - flat->square, PASSO_UNIT_Q32, most);
+	const struct passo_path_part last = {PASSO_PATH_DOWN, most, flat->square,
+	    passo_path_larger(passo_path_smaller(needed, down->slope), 1), .early = false};
 	down->length = both - most;
 	if (down->length == 0)
 		count--;
