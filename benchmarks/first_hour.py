@@ -123,7 +123,7 @@ def hour(tell: Tell) -> Iterator[Figure]:
     tell(f"make demo: {found['seconds']} s, {found['megabytes']} MB")
     command = "sh tools/first_hour.sh"
     yield most("`make demo` in a fresh clone, by the clock", DEMO_SECONDS, found["seconds"], "s", command)
-    yield most("the clone after it", DEMO_MEGABYTES, found["megabytes"], "MB", command)
+    yield most("a fresh clone after `make demo`", DEMO_MEGABYTES, found["megabytes"], "MB", command)
     count = f"{found['commands']} of {found['commands']}"
     yield Figure("commands of README and tutorial that run there", "all", count, True, command)
     steps = f"{found['steps']:,} steps"
