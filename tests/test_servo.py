@@ -72,6 +72,7 @@ def test_a_thread_that_loses_periods() -> None:
     """It does not catch up after a gap: the path waits until the core has its lines again."""
     found = run(SETTING, SECONDS, waves(3, SECONDS), 0, lambda call: 0.06 if call >= 700 else 0.0)
     assert found.slowed > 0 and found.depths.min() < found.lag / 2
+    assert found.depths[-1] >= found.lag - LATE
     assert found.positions == found.made == found.commands[-1].tolist()
     assert not np.isnan(found.passes()[found.moved]).any()
     assert found.hardest <= ACCELERATION * ROUNDING
