@@ -51,7 +51,7 @@ SEARCHED = {
     "off": ("way off the path, beyond the tolerance of merging, in motor steps", OFF_BOUND),
 }
 COUNTED = {
-    "underrun": "the core ran dry",
+    "underrun": "an underrun of the core",
     "fault": "any other fault, or an end that is not exact",
     "slow": "slower than its bound, all lines known",
     "slow48": f"slower than its bound, {LOOK_AHEAD} lines",

@@ -39,12 +39,15 @@ module passo_input #(
   // Kept: a LUT for two inputs.
   localparam PAIRS = (WIDTH + 1) / 2;
   (* keep *)
-  wire [  PAIRS-1:0] changes;
-  wire [2*PAIRS-1:0] each_changes = {{(2 * PAIRS - WIDTH) {1'b0}}, first ^ second};
+  wire [PAIRS-1:0] changes;
   genvar pair;
   generate
     for (pair = 0; pair < PAIRS; pair = pair + 1) begin : g_changes
-      assign changes[pair] = each_changes[pair*2+:2] != 2'd0;
+      if (pair * 2 + 1 < WIDTH) begin : g_two
+        assign changes[pair] = first[pair*2+:2] != second[pair*2+:2];
+      end else begin : g_one
+        assign changes[pair] = first[pair*2] != second[pair*2];
+      end
     end
   endgenerate
 

@@ -34,7 +34,7 @@ def test_a_way_off_a_switch_may_be_a_quarter_of_a_line(field: str) -> None:
 
 @pytest.mark.parametrize("pull_off", [1, 2])
 def test_a_home_ends_off_its_switch(pull_off: int) -> None:
-    """By as many steps as it was told, a single one too."""
+    """By as many steps as asked for, a single one too."""
     driver = driver_of(machine_of(Switch("home", 0, -700)))
     assert run_home(driver, home(pull_off=pull_off, position=40)) == "OK"
     assert driver.positions()[0] == 40 + pull_off
