@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from passo.console import console, stages, table
-from passo.output import write_text
+from passo.output import write_bytes, write_text
 from passo.toolchain import paths
 
 from benchmarks import page, play, preview
@@ -136,7 +136,7 @@ def write_picture(png: bytes) -> None:
     """build/first_hour/page.png of the repository."""
     folder = paths.build / "first_hour"
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "page.png").write_bytes(png)
+    write_bytes(folder / "page.png", png)
 
 
 def written(figures: list[Figure]) -> str:

@@ -299,6 +299,7 @@ DIRECT = {
     "sim/passo/planted.py": "into a copy of the sources",
     "sim/passo/grbl_setup.py": "words of a flash that is simulated",
     "benchmarks/play_case.py": "into a temporary folder",
+    "benchmarks/first_hour.py": "into a temporary folder",
     "benchmarks/rigid_tapping.py": "into a temporary folder",
     "tools/make_site.py": "into a folder that is created each time",
     "benchmarks/preview.py": "into a temporary folder",
