@@ -8,6 +8,7 @@ from passo.path import PathSettings
 
 from benchmarks import path_adversary, path_measure
 from benchmarks.path_measure import KINDS, Measured, measure
+from benchmarks.path_page import PROFILES, page
 from benchmarks.path_paths import case_of, read_cases
 
 KEPT = read_cases(path_adversary.WORST)
@@ -54,3 +55,33 @@ def test_cases_are_kept_as_they_are() -> None:
     for case in KEPT.values():
         assert case_of(case.to_json()) == case
     assert set(KINDS) >= {"underrun", "slow", "acceleration"}
+
+
+def test_the_page_of_figures() -> None:
+    """Each figure beside its bound, each path and profile in a row."""
+    one = {
+        "lines": 4,
+        "seconds": 2.5,
+        "unlimited": 1.01,
+        "look_ahead": 1.02,
+        "speed": 0.5,
+        "acceleration": 0.75,
+    }
+    profiles = [
+        {"name": "square", "profile": profile, "time": 1.1, "look_ahead": 1.1 + n, "peak_jerk": 1000.0 * n}
+        for n, profile in enumerate(PROFILES)
+    ]
+    report = {
+        "adversarial": {"paths": 12_345, "worst": {"unlimited": 1.0123, "jerk": 0.9}, "beyond": {"slow": 7}},
+        "paths": [{"name": "square", "instructions": 1234, **one}],
+        "profiles": profiles,
+        "circle_seconds": 1.3568,
+    }
+    text = page(report)
+    assert "12,345 adversarial paths" in text and "takes 1.357 s" in text
+    assert "all lines known; 1: the fastest motion | 1.0123 | 1.02 |" in text
+    assert "profile `jerk`; 1: its limit | 0.9000 | 1.05 |" in text
+    assert "| slower than its bound, all lines known | 7 |" in text and "| a jerk too high | 0 |" in text
+    assert "| square of 50 mm | 4 | 2.500 | 1.0100 | 1.0200 | 0.500 | 0.750 | 1,234 |" in text
+    assert "| square of 50 mm | time | 1.100 | 1.100 (2.100) | 1.100 (3.100) | 1.100 (4.100) |" in text
+    assert "|  | jerk | 0 | 1,000 | 2,000 | 3,000 |" in text
