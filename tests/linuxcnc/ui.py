@@ -10,7 +10,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-LIMIT = 300.0  # s
+LIMIT = 800.0  # s
+ARRIVED = 1e-6  # mm; programs end where all axes have a whole step
 LOOK = 0.01
 SETTLED = 20  # looks at rest
 
@@ -56,7 +57,7 @@ class User:
             joints = self.stat.joint[: self.stat.joints]
             if self.stat.interp_state != linuxcnc.INTERP_IDLE or any(abs(j["velocity"]) > 0 for j in joints):
                 return False
-            if any(abs(j["ferror_current"]) > j["max_ferror"] / 100 for j in joints):
+            if any(abs(j["ferror_current"]) > ARRIVED for j in joints):
                 return False
             time.sleep(LOOK)
         return True
