@@ -92,7 +92,9 @@ def test_the_wheel_has_all_sources_and_type_hints() -> None:
     with zipfile.ZipFile(wheel()) as archive:
         packed = set(archive.namelist())
     for folder in SOURCES:
-        files = {f"passo/tree/{folder}/{path.name}" for path in (paths.root / folder).iterdir()}
+        files = {
+            f"passo/tree/{folder}/{path.name}" for path in (paths.root / folder).iterdir() if path.is_file()
+        }
         assert files <= packed
     for folder in ("passo", "passo_fpga", "passo_stm32"):
         assert f"{folder}/py.typed" in packed

@@ -368,7 +368,7 @@ def test_report_tries_more_seeds_where_there_is_a_goal(
     assert (rows["hx8k", 1]["f_max_minimum"], rows["hx8k", 1]["f_max_median"]) == (101.0, 102.0)
     assert not rows["up5k", 2]["fits"]
     said = capsys.readouterr().out
-    assert len(re.findall(r"^\[ *0:00\] place and route \d+ of 17: ", said, re.M)) == 15
+    assert len(re.findall(r"^\[ *0:00\] place and route \d+ of 17(, 0:00 left)?: ", said, re.M)) == 15
     assert re.search(r"synthesis 4 of 4: ", said) and re.search(r"place and route 17 of 17: ", said)
 
 

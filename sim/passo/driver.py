@@ -53,6 +53,8 @@ class Driver:
     Methods raise DriverError, and the engine's own exceptions.
     """
 
+    _config: tuple[Any, Any] | None = None  # of the last configured axis, and its struct
+
     def __init__(
         self,
         engine: Any,
@@ -77,7 +79,6 @@ class Driver:
             self.options.channels, self.options.axes = parameters.channels, parameters.axes
             self.options.tick_log2 = parameters.tick_log2
         self._source: Source | None = None
-        self._config: tuple[Any, Any] | None = None  # of the last configured axis, and its struct
         if beside:
             self._check("open_channel", self.lib.passo_open_channel(self.c, self.host, self.options))
         else:

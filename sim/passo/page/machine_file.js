@@ -305,7 +305,6 @@ class MachineReader {
         const table = readSubtable(data, "spindle"), [low, high] = RULES.counts, most = RULES.wander_max;
         checkKnown(table, RULES.keys.spindle);
         if (!maximum) wrong("it needs spindle_maximum");
-        if (this.tables.some(axis => axis.has("encoders"))) wrong("not beside encoders of axes: leave one of them out");
         if (data.has("board")) wrong("no board has pins for its encoder: write clock_hz instead of board");
         readInteger(table, "counts", low, high);
         const startUp = own(table, "start_up", RULES.defaults.start_up), wander = own(table, "wander", 0);
