@@ -2,14 +2,14 @@
 """Execute a planned motion on an engine like a host: over SPI, keeping the queues filled."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from passo.build import Parameters
 from passo.driver import Driver
-from passo.engine import Engine, model_engine, moves_of, rtl_engine
+from passo.engine import Engine, model_engine, rtl_engine
 from passo.failure import Failure
 from passo.host import ChannelState
 from passo.move_forms import USER_BANK
@@ -71,17 +71,18 @@ class Run:
 
     def steps(self, axis: int) -> Steps:
         """Clocks since the start of the motion and directions (1, -1) of all steps of an axis."""
-        moves = moves_of(self.pins, axis)
-        made = np.flatnonzero(moves)
-        return self.pins["clock"][made].astype(np.int64) - self.start, moves[made]
+        return self._steps_of([axis])[0]
 
     def all_steps(self) -> list[Steps]:
         """The same of all axes, in one pass over the pins."""
+        return self._steps_of(range(self.file.axes))
+
+    def _steps_of(self, axes: Iterable[int]) -> list[Steps]:
         clock = self.pins["clock"].astype(np.int64) - self.start
         step, back = self.pins["step"].copy(), self.pins["dir"]
         step[1:] &= ~self.pins["step"][:-1]
         found = []
-        for axis in range(self.file.axes):
+        for axis in axes:
             made = np.flatnonzero(step & (1 << axis))
             found.append((clock[made], 1 - 2 * (back[made] >> axis & 1).astype(np.int8)))
         return found
