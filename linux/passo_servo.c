@@ -11,9 +11,6 @@
 #include "passo_words.h"
 
 #define ONE_Q16 (UINT32_C(1) << 16)
-#define ONE_Q32 (UINT64_C(1) << 32)
-#define ONE_Q48 (UINT64_C(1) << 48)
-#define STEP_MAX (ONE_Q48 - 1u)
 #define VELOCITY PASSO_VELOCITY_MAX /* UQ0.48 substeps per clock */
 #define VELOCITY_Q32 (VELOCITY >> 16)
 #define GRAIN 2u /* clocks of a substep */
@@ -59,7 +56,7 @@ static uint32_t microseconds(const struct passo_servo *servo, uint32_t periods)
 /* Rounded to nearest; a right shift of a negative number is not portable. */
 static int32_t to_steps(int64_t place)
 {
-	const uint64_t size = (passo_size64(place) + ONE_Q32 / 2u) >> 32;
+	const uint64_t size = (passo_size64(place) + PASSO_UNIT_Q32 / 2u) >> 32;
 
 	return place < 0 ? -(int32_t)size : (int32_t)size;
 }
@@ -127,7 +124,7 @@ static uint32_t length(struct passo_servo *servo)
 	servo->trim = (int32_t)(trim * PPB / PPM_Q40);
 	servo->part += trim < 0 ? servo->substeps - change : servo->substeps + change;
 	const uint32_t substeps = (uint32_t)(servo->part >> 32);
-	servo->part &= ONE_Q32 - 1u;
+	servo->part &= PASSO_UNIT_Q32 - 1u;
 	return substeps;
 }
 
@@ -171,7 +168,7 @@ static void set_ramp(struct passo_ramp *ramp, uint64_t velocity, uint32_t ticks)
 	*ramp = (struct passo_ramp){
 	    .velocity_end = velocity,
 	    .ticks = ticks,
-	    .progress_step = ticks > 1u ? ONE_Q48 / ticks : STEP_MAX,
+	    .progress_step = ticks > 1u ? PASSO_ONE_Q48 / ticks : PASSO_PROGRESS_STEP_MAX,
 	};
 }
 
@@ -264,7 +261,7 @@ static enum passo_error decide(struct passo_servo *servo)
 
 static void control(struct passo_servo *servo)
 {
-	const int64_t error = ((int64_t)servo->depth - servo->lag) * (int64_t)ONE_Q32;
+	const int64_t error = ((int64_t)servo->depth - servo->lag) * (int64_t)PASSO_UNIT_Q32;
 
 	servo->error += over(error - servo->error, SMOOTH_LOG2);
 	if (servo->full)
@@ -333,7 +330,7 @@ static enum passo_servo_problem check_axis(struct passo_servo *servo, uint8_t ax
 {
 	const struct passo_servo_axis *limits = &servo->options.axis[axis];
 	const uint32_t period = servo->options.period_ns;
-	const uint64_t highest = passo_highest_speed(servo->passo, axis, ONE_Q32);
+	const uint64_t highest = passo_highest_speed(servo->passo, axis, PASSO_UNIT_Q32);
 
 	servo->axis = axis;
 	servo->top[axis] = passo_mul_div(limits->speed, period, NANOSECONDS);
@@ -366,8 +363,8 @@ static enum passo_servo_problem check(struct passo_servo *servo)
 	servo->axis = options->axes;
 	if (options->axes == 0u || options->axes > machine->axes)
 		return PASSO_SERVO_AXES;
-	servo->substeps =
-	    passo_mul_div((uint64_t)machine->clock_hz * options->period_ns, ONE_Q32, NANOSECONDS * GRAIN);
+	servo->substeps = passo_mul_div(
+	    (uint64_t)machine->clock_hz * options->period_ns, PASSO_UNIT_Q32, NANOSECONDS * GRAIN);
 	for (uint8_t axis = 0; axis < options->axes; axis++) {
 		const enum passo_servo_problem problem = check_axis(servo, axis);
 		if (problem != PASSO_SERVO_OK)
@@ -424,7 +421,7 @@ enum passo_error passo_servo_start(struct passo_servo *servo)
 	if (error != PASSO_OK)
 		return error;
 	for (unsigned axis = 0; axis < servo->options.axes; axis++) {
-		servo->command[axis] = servo->place[axis] = servo->steps[axis] * (int64_t)ONE_Q32;
+		servo->command[axis] = servo->place[axis] = servo->steps[axis] * (int64_t)PASSO_UNIT_Q32;
 		servo->speed[axis] = 0;
 	}
 	servo->rest = servo->lag - STARTING;
