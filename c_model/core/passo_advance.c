@@ -137,8 +137,13 @@ static uint64_t advance(struct passo_core *core, const struct passo_inputs *inpu
 	clocks = rest_quiet(core, inputs, moving, limit);
 	if (clocks == 0u)
 		return 0;
+	const bool rests = !shift && passo_advance_link_rests(core, inputs);
 	if (moving == core->parameters.channels) {
-		clocks = passo_advance_link(core, inputs, shift, clocks);
+		clocks = rests ? clocks : passo_advance_link(core, inputs, shift, clocks);
+	} else if (rests) {
+		const struct passo_channel_inputs channel_inputs = inputs_of(core, moving, inputs);
+
+		clocks = passo_advance_run(&core->channel[moving], &channel_inputs, clocks, changed);
 	} else {
 		const struct before before = look_back(core, shift);
 		const struct passo_channel_inputs channel_inputs = inputs_of(core, moving, inputs);
