@@ -64,10 +64,10 @@ def rtl_sources(folder: Path = paths.rtl) -> list[Path]:
 
 
 def planner_library() -> Path:
-    """Planner, G-code interpreter, frame codec, link library, driver, as on a microcontroller; Linux."""
+    """Planner, G-code interpreter, frame codec, link library, driver, as on a microcontroller, and tools."""
     folders = (paths.planner, paths.gcode, paths.protocol, paths.driver, paths.grbl, paths.linux)
-    files = [*sources(*folders), paths.engine / "passo_csv.c", paths.engine / "passo_rests.c"]
-    return library("planner", [*folders, paths.engine], files, "-O1")
+    engine = [paths.engine / f"passo_{name}.c" for name in ("csv", "pulses", "rests")]
+    return library("planner", [*folders, paths.engine], [*sources(*folders), *engine], "-O1")
 
 
 def engine_sources() -> list[Path]:

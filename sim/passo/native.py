@@ -52,6 +52,7 @@ HEADERS = (
     paths.engine / "passo_engine.h",
     paths.engine / "passo_terminal.h",
     paths.engine / "passo_judge.h",
+    paths.engine / "passo_pulses.h",
     paths.engine / "passo_preview.h",
     paths.engine / "passo_csv.h",
     paths.engine / "passo_rests.h",
