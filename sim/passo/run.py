@@ -229,7 +229,7 @@ def execute_channels(
         Run(
             file=channel.file,
             plans=channel.plans,
-            pins=np.concatenate(channel.pins),
+            pins=channel.pins,
             state=ChannelState(
                 state=State(snapshot.state),
                 cause=Cause(snapshot.cause),
