@@ -185,6 +185,24 @@ static bool level_of(const uint8_t *row, unsigned pin, unsigned axis)
 	return row && ((uint32_t)row[8u + pin] >> axis & 1u) != 0u;
 }
 
+size_t passo_pulses_steps(
+    const uint8_t *rows, size_t count, uint64_t start, unsigned axis, int64_t *clocks, int8_t *directions)
+{
+	bool was = false;
+	size_t steps = 0;
+
+	for (size_t i = 0; i < count; i++, rows += PASSO_PULSES_ROW) {
+		const bool step = level_of(rows, 0, axis);
+
+		if (step && !was) {
+			clocks[steps] = (int64_t)(clock_of(rows) - start);
+			directions[steps++] = level_of(rows, 1, axis) ? -1 : 1;
+		}
+		was = step;
+	}
+	return steps;
+}
+
 /* DIR first: a step in the same clock has the new direction. */
 static void judge_axis(struct judge *judge, const uint8_t *rows, size_t count, uint64_t start)
 {

@@ -57,6 +57,11 @@ struct passo_pulse_plan {
 	const double *times, *places; /* ... and substeps due by then */
 };
 
+/* The steps of an axis: clock since the start and direction of each, for which there is room for half of the
+ * rows, rounded up. Returns their number. */
+size_t passo_pulses_steps(
+    const uint8_t *rows, size_t count, uint64_t start, unsigned axis, int64_t *clocks, int8_t *directions);
+
 /* Checks `axes` axes; `faults` has room for the first fault of each kind, those of the curve for each plan:
  * PASSO_PULSE_EARLY + 2 * `plans` for each axis. `start`: clock at which the motion started. Returns whether
  * there is a fault. */

@@ -5,12 +5,13 @@ The guarantees are those of docs/architecture.md, checked at the pins without kn
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
-from passo.curve import shapes_of
-from passo.moving_channel import PINS
+from passo.curve import shapes, told_of
+from passo.move_forms import Points
 from passo.native import ffi, planner
 from passo.plan import Q48, Plan
 from passo.run import Run, Steps
@@ -53,7 +54,6 @@ def _pulse_faults(run: Run) -> list[Fault]:
     """Those of sim/engine/passo_pulses.h, axis by axis."""
     c, pins = planner(), run.file.pins
     rows = np.ascontiguousarray(run.pins)
-    assert PINS.itemsize == c.PASSO_PULSES_ROW
     curves = [expected(plan) for plan in run.plans]
     plans = ffi().new("struct passo_pulse_plan[]", len(curves))
     for plan, curve, wanted in zip(run.plans, curves, plans, strict=True):
@@ -102,17 +102,20 @@ def _told(axis: int, kind: int, fault: Any) -> Fault:
 Curve = tuple[np.ndarray, np.ndarray]
 
 
+@lru_cache(16)
+def _points(shape: int, alpha: int, table: Points) -> np.ndarray:
+    return shapes(alpha, table)[shape](GRID)[0]
+
+
 def expected(plan: Plan) -> Curve:
     """Clocks since the start, and the substeps due by then: the curve, sampled in the middle of each tick.
 
     Before and after the plan it goes on at its highest velocity, so that a step there is early or late.
     """
-    velocities, velocity = [np.empty(0)], 0.0
-    shapes: dict[int, np.ndarray] = {}
+    velocities, velocity, told = [np.empty(0)], 0.0, told_of(plan)
     for ramp in plan.ramps:
         end, u = ramp.velocity_end / Q48, (np.arange(ramp.ticks) + 0.5) / max(ramp.ticks, 1)
-        if (points := shapes.get(ramp.shape)) is None:
-            points = shapes[ramp.shape] = shapes_of(plan)[ramp.shape](GRID)[0]
+        points = _points(ramp.shape, *told)
         s = np.interp(1 - u if ramp.mirror else u, GRID, points)
         velocities.append(velocity + (end - velocity) * (1 - s if ramp.mirror else s))
         velocity = end
