@@ -5,7 +5,7 @@
 
 Writes the table of docs/first_hour.md. What was measured of a commit is kept, part by part, in
 build/first_hour/figures.json: a run that was interrupted goes on where it was. `--again` measures all of it
-anew; names of parts measure these anew, and the others are those of any commit before. `--short` prints a
+anew; names of parts measure these alone, beside what is known of the others. `--short` prints a
 table of small cases, without the hour in a fresh clone (tools/first_hour.sh). Times are of the processor, but
 for `make demo`. Needs tools/setup.sh dev firmware web browser, and the history of the repository for the
 times of an earlier commit.
@@ -170,12 +170,12 @@ def measure(tell: Tell, chosen: Sequence[str] = (), again: bool = False) -> list
     head = commit()
     kept = json.loads(KEPT.read_text()) if KEPT.exists() else {}
     for name, part in PARTS.items():
-        known = name in kept and not again and (bool(chosen) or kept[name]["commit"] == head)
-        if name in chosen or not known:
+        known = name in kept and kept[name]["commit"] == head
+        if name in chosen or not (chosen or (known and not again)):
             kept[name] = {"commit": head, "figures": [asdict(figure) for figure in part(tell)]}
             make_folder(KEPT.parent)
             write_json(kept, KEPT)
-    return [Figure(**figure) for name in PARTS for figure in kept[name]["figures"]]
+    return [Figure(**figure) for name in PARTS if name in kept for figure in kept[name]["figures"]]
 
 
 def measure_short(tell: Tell) -> list[Figure]:
