@@ -297,7 +297,7 @@ def test_a_wrong_machine_file_is_accessible(tmp_path: Path, page: str, dark: boo
         assert browser.value(FOUND) == []
 
 
-BLOCKED = 0.1  # seconds
+BLOCKED, GAP = 0.1, 0.3  # seconds of a task, and between frames on a computer with other work
 
 
 def test_a_long_part_does_not_block_the_page() -> None:
@@ -312,20 +312,20 @@ def test_a_long_part_does_not_block_the_page() -> None:
 
 
 def test_frames_go_on_while_a_long_part_is_played(opened: Browser | Firefox) -> None:
-    """By the clock, so beside what else the computer does: one of five is not longer."""
+    """By the clock, so beside what else the computer does; the processor's time is that of the test above."""
     blocked: list[float] = []
-    while len(blocked) < 5 and min(blocked, default=1) > BLOCKED:
+    while len(blocked) < 5 and min(blocked, default=1) > GAP:
         played = play(opened, 2000)
         assert played.steps > 100_000
         blocked.append(played.longest_gap - played.busy_gap)
-    assert min(blocked) < BLOCKED
+    assert min(blocked) < GAP
 
 
 def test_a_page_that_is_blocked_is_seen(opened: Browser | Firefox) -> None:
     opened.value(
         "setInterval(() => { const end = performance.now() + 400; while (performance.now() < end); }, 900)"
     )
-    assert play(opened, 1000).longest_gap > 0.4
+    assert play(opened, 1000).longest_gap > 0.4 > GAP
 
 
 @pytest.mark.parametrize(
