@@ -120,7 +120,7 @@ machine: ## Build the machine of FILE=MACHINE.toml: bitstream, firmware, setting
 	@tools/setup.sh fpga firmware
 	@$(BIN)/passo make $(FILE)
 
-first-hour: ## Measure a first hour: a fresh clone, README and tutorial, a part in the browser; writes docs/first_hour.md (half an hour; goes on where it was; ONLY=rtl: a part of it).
+first-hour: ## Measure a first hour: a fresh clone, README and tutorial, a part in the browser; writes docs/first_hour.md (half an hour; continues where it was; ONLY=rtl: a part of it).
 	@tools/setup.sh dev firmware web browser
 	@$(BIN)/python -m benchmarks.first_hour $(ONLY)
 

@@ -4,11 +4,11 @@
     python -m benchmarks.first_hour [--short] [--again] [PART...]
 
 Writes the table of docs/first_hour.md. What was measured of a commit is kept, part by part, in
-build/first_hour/figures.json: a run that was interrupted goes on where it was. `--again` measures all of it
-anew; names of parts measure these alone, beside what is known of the others. `--short` prints a
-table of small cases, without the hour in a fresh clone (tools/first_hour.sh). Times are of the processor, but
-for `make demo`. Needs tools/setup.sh dev firmware web browser, and the history of the repository for the
-times of an earlier commit.
+build/first_hour/figures.json: a run that was interrupted continues where it was. `--again` measures all of it
+again; names of parts measure these alone, beside what is known of the others. `--short` prints a table of
+small cases, without the hour in a fresh clone (tools/first_hour.sh). Times are of the processor, but for
+`make demo`. Needs tools/setup.sh dev firmware web browser, and the history of the repository for the times of
+an earlier commit.
 """
 
 import argparse
@@ -188,7 +188,7 @@ def main() -> int:
     options = argparse.ArgumentParser(prog="first_hour", description="Measure a first hour with Passo.")
     options.add_argument("--short", action="store_true", help="small cases, no fresh clone, no page")
     options.add_argument("--again", action="store_true", help="forget what was measured")
-    options.add_argument("parts", nargs="*", metavar="PART", help="measure only these anew")
+    options.add_argument("parts", nargs="*", metavar="PART", help="measure only these")
     chosen = options.parse_args()
     if unknown := set(chosen.parts) - set(PARTS):
         options.error(f"no such part: {', '.join(sorted(unknown))}; there are {', '.join(PARTS)}")

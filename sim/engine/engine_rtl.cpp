@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * The Verilated engine. The parameters of the core are fixed at build time.
  *
- * Nearly all its time goes to the logic of the core, some thousand instructions in each clock, whatever moves.
- * So the rest is kept small: a clock without a change of an input is one evaluation, in which Verilator sees
- * a rising edge of clk after a level that it has not evaluated.
+ * Nearly all its time goes to the logic of the core, some thousand instructions in each clock, whatever
+ * moves. So the rest is kept small: a clock without a change of an input is one evaluation, in which
+ * Verilator sees a rising edge of clk after a level that it has not evaluated.
  */
 #include <memory>
 
