@@ -204,13 +204,15 @@ enum passo_plan_error passo_path_measure(
 	if (substeps > PASSO_SUBSTEPS_MAX)
 		return PASSO_PLAN_TOO_LONG;
 
-	limit_line(path, unit, move->feed, item);
-	if (path->rest)
-		passo_path_begin_straight(path);
-	else
-		item->bend = passo_path_limit_corner(path, unit, length, item);
-	passo_path_keep_start(item, &path->at);
 	item->substeps = (uint32_t)substeps;
+	limit_line(path, unit, move->feed, item);
+	if (path->rest) {
+		passo_path_begin_straight(path);
+		passo_path_begin(path, length, NULL, 0);
+	} else {
+		item->bend = passo_path_limit_corner(path, unit, length, item);
+	}
+	passo_path_keep_start(item, &path->at);
 	passo_path_set_fall(item);
 	path->at.carry =
 	    stretched ? 0 : (int32_t)(path->at.carry + (int64_t)length - (int64_t)(substeps << 16));

@@ -84,6 +84,7 @@ struct passo_path_item {
 	bool rapid;         /* its feed is PASSO_PATH_RAPID */
 #ifndef PASSO_WITHOUT_ROUNDING
 	uint32_t turn; /* substeps on either side over which a lone corner at its start may be rounded */
+	uint8_t begun; /* bits: halves with the curvature of the corner at the start of their straight */
 	/* of a path that falls, or rises: of the axis with most of both there, and of that which lost most */
 	struct passo_path_share lone[2][PASSO_PATH_SHARES];
 	bool valley; /* it has that where the path comes down to the corner and speeds up behind it */
@@ -122,6 +123,15 @@ struct passo_path_place {
 	int32_t half_turn[PASSO_PATH_AXES_MAX]; /* of the change of direction at that corner, Q1.30 */
 	uint64_t turn, over;                    /* its size, and in which length it turns, UQ.30 substeps */
 	uint32_t turns; /* corners of this curve, to one side; 0: the line is in none */
+#endif
+#ifndef PASSO_WITHOUT_ROUNDING
+	/* The straight that the last line ends, of lines of several feeds, and the corner that it begins with. */
+	uint64_t straight;                 /* its length, UQ32.16 substeps */
+	uint32_t first;                    /* the item that it begins with */
+	bool cornered;                     /* it begins with a corner, before which there is: */
+	int32_t came[PASSO_PATH_AXES_MAX]; /* this unit vector */
+	uint64_t came_straight, came_last; /* a straight, and the line at its end */
+	uint64_t arc;                      /* what the corner can have of either */
 #endif
 	int32_t carry;        /* Q16: substeps that rounding has withheld from the lines so far */
 	uint32_t line_credit; /* clocks that the last lines have left, see passo_path_pace.c */
@@ -165,6 +175,11 @@ struct passo_path_planner {
 	uint64_t velocity; /* UQ0.48 substeps per clock */
 #ifndef PASSO_WITHOUT_ROUNDING
 	uint64_t passing; /* the square at which they pass the start of item `planned` */
+	uint64_t rounded;    /* the corner before a straight is rounded for this length of it; */
+	uint32_t rounded_at; /* this item begins it */
+	uint32_t point[2];   /* items at whose starts the rounding of a corner, before it and behind it, ends; */
+	uint32_t pointed;    /* it is that at the start of this item */
+	uint32_t bent;       /* what is before this item is as it was when `reach` was found */
 #endif
 	bool at_rest;
 	bool started;    /* the dwell before the item is over */

@@ -1,0 +1,204 @@
+/* SPDX-License-Identifier: MIT
+ * Straights of several lines: with other feeds or outputs they stay lines of their own, but the rounding of a
+ * corner may span them. It covers whole halves of them, but for the line beside the corner. A line that goes
+ * straight on makes more of the straight known, and the corner at its start faster.
+ */
+#include <stddef.h>
+
+#include "passo_path_private.h"
+
+#ifdef PASSO_WITHOUT_ROUNDING
+
+uint64_t passo_path_spread(struct passo_path_planner *path, const struct passo_path_meeting *meeting,
+    struct passo_path_corner *corner, bool behind, uint64_t reach, const int64_t *curvature)
+{
+	const uint32_t index = behind ? meeting->index : meeting->index - 1;
+	(void)corner;
+	struct passo_path_item *item = index == path->added ? meeting->newest : passo_path_item(path, index);
+
+	if (reach >= (behind ? meeting->next : meeting->last) / 2)
+		passo_path_bend(path, curvature, behind ? meeting->to : meeting->from, 0, item);
+	passo_path_set_fall(item);
+	return reach;
+}
+
+#else
+
+static struct passo_path_item *item_at(
+    const struct passo_path_planner *path, const struct passo_path_meeting *meeting, uint32_t index)
+{
+	return index == path->added ? meeting->newest : passo_path_item(path, index);
+}
+
+/* Of a half that has no curvature of another corner, the curvature is replaced. */
+static void bend_half(struct passo_path_planner *path, const struct passo_path_meeting *meeting, bool behind,
+    uint32_t index, unsigned half, const int64_t *curvature)
+{
+	struct passo_path_item *item = item_at(path, meeting, index);
+
+	if (curvature == NULL)
+		return;
+	if (passo_path_spans(path) && (behind || (item->begun >> half & 1u) == 0))
+		passo_path_straighten(item, half);
+	if (behind)
+		item->begun |= (uint8_t)(1u << half);
+	passo_path_bend(path, curvature, behind ? meeting->to : meeting->from, half, item);
+	passo_path_set_fall(item);
+	path->bent = index < path->bent ? index : path->bent;
+}
+
+uint64_t passo_path_spread(struct passo_path_planner *path, const struct passo_path_meeting *meeting,
+    struct passo_path_corner *corner, bool behind, uint64_t reach, const int64_t *curvature)
+{
+	const unsigned near = behind ? 0 : 1;
+	uint32_t index = behind ? meeting->index : meeting->index - 1;
+	uint64_t passed = 0, length = behind ? meeting->next : meeting->last;
+
+	corner->point[behind].index = 0;
+	if (reach < length / 2)
+		return reach;
+	for (;;) {
+		bend_half(path, meeting, behind, index, near, curvature);
+		if (reach < passed + length)
+			return passed + length / 2;
+		bend_half(path, meeting, behind, index, 1 - near, curvature);
+		passed += length;
+		if (behind ? index == meeting->end : index <= path->planned + 1)
+			return passed; /* the ramps are there */
+		index = behind ? index + 1 : index - 1;
+		length = index == path->added ? meeting->newest_length
+		                              : (uint64_t)passo_path_item(path, index)->substeps << 16;
+		if (reach < passed + length / 2) {
+			corner->point[behind].index = behind ? index : index + 1;
+			corner->point[behind].left = reach - passed;
+			return reach;
+		}
+	}
+}
+
+/* Sets what limits the start of an item that goes straight on. */
+static void limit_point(
+    struct passo_path_planner *path, uint32_t index, struct passo_path_item *point, uint64_t bend)
+{
+	point->bend = bend;
+	if (index < path->added)
+		passo_path_limit(path, index);
+	path->bent = index < path->bent ? index : path->bent;
+}
+
+/* Forgets where the rounding of the corner at the start of an item ends. */
+static void clear_points(struct passo_path_planner *path, uint32_t corner)
+{
+	for (unsigned behind = 0; path->pointed == corner && behind < 2; behind++) {
+		const uint32_t index = path->point[behind];
+
+		if (index > path->planned && index < path->added) {
+			passo_path_item(path, index)->turn = 0;
+			limit_point(path, index, passo_path_item(path, index), PASSO_PATH_SQUARE_MAX);
+		}
+		path->point[behind] = 0;
+	}
+}
+
+void passo_path_set_points(struct passo_path_planner *path, const struct passo_path_meeting *meeting,
+    const struct passo_path_corner *corner, const struct passo_path_item *item)
+{
+	const uint64_t both = corner->rounding.before + corner->rounding.behind;
+	/* there it turns over all of the rounding */
+	const uint64_t bend = passo_path_smaller(
+	    passo_mul_div(item->bend, both << (PASSO_PATH_UNIT_BITS - 16), corner->over), PASSO_PATH_SQUARE_MAX);
+
+	clear_points(path, meeting->index);
+	path->pointed = meeting->index;
+	for (unsigned behind = 0; behind < 2; behind++) {
+		const uint32_t index = corner->point[behind].index;
+
+		path->point[behind] = index;
+		if (index == 0)
+			continue;
+		struct passo_path_item *point = item_at(path, meeting, index);
+		for (unsigned i = 0; i < 2 * PASSO_PATH_SHARES; i++)
+			point->lone[i / PASSO_PATH_SHARES][i % PASSO_PATH_SHARES] =
+			    item->lone[i / PASSO_PATH_SHARES][i % PASSO_PATH_SHARES];
+		point->turn = (uint32_t)(corner->point[behind].left >> 16);
+		limit_point(path, index, point, bend);
+	}
+}
+
+/* Rounds the corner at the start of the straight of the last line, if it is so long, and no ramp is there. */
+static void round_start(
+    struct passo_path_planner *path, uint64_t straight, struct passo_path_item *newest, uint64_t length)
+{
+	const struct passo_path_place *at = &path->at;
+	const uint64_t known = path->rounded_at == at->first ? path->rounded : at->straight;
+	struct passo_path_corner corner;
+
+	if (!passo_path_spans(path) || !at->cornered || at->first <= path->planned || path->jump
+	    || straight == known || passo_path_smaller(straight, known) / 2 >= at->arc)
+		return;
+	struct passo_path_item *first = passo_path_item(path, at->first);
+	const struct passo_path_meeting meeting = {
+	    .index = at->first,
+	    .from = at->came,
+	    .to = at->direction,
+	    .before = at->came_straight,
+	    .behind = straight,
+	    .last = at->came_last,
+	    .next = at->first + 1 == path->added ? at->length : (uint64_t)first->substeps << 16,
+	    .newest = newest,
+	    .newest_length = length,
+	    .end = newest == NULL ? path->added - 1 : path->added,
+	};
+
+	passo_path_find_turn(path, at->came, at->direction, &corner);
+	corner.arc = at->arc;
+	first->rest = false;
+	first->bend = passo_path_round(path, &meeting, &corner, first);
+	passo_path_limit(path, at->first - 1);
+	passo_path_limit(path, at->first);
+	passo_path_rest_if_slow(path, first);
+	path->rounded_at = at->first;
+	path->rounded = straight;
+	path->final = path->final < path->planned ? path->final : path->planned;
+}
+
+bool passo_path_goes_on(const struct passo_path_planner *path, uint64_t turn, uint64_t length)
+{
+	const uint64_t shorter = passo_path_smaller(length, path->at.length);
+	const uint64_t off = passo_mul_shift((uint64_t)passo_isqrt64(turn) << 8, shorter, PASSO_PATH_UNIT_BITS);
+
+	return passo_path_spans(path) && off <= path->substeps_per_mm >> 7; /* 2^-31 mm, in UQ.24 substeps */
+}
+
+void passo_path_end_straight(struct passo_path_planner *path)
+{
+	round_start(path, path->at.straight, NULL, 0);
+}
+
+void passo_path_prolong(struct passo_path_planner *path, struct passo_path_item *newest, uint64_t length)
+{
+	clear_points(path, path->added); /* of a corner that has become this line */
+	round_start(path, path->at.straight + length, newest, length);
+	path->at.straight += length;
+}
+
+void passo_path_begin(
+    struct passo_path_planner *path, uint64_t length, const struct passo_path_meeting *meeting, uint64_t arc)
+{
+	struct passo_path_place *at = &path->at;
+
+	at->first = path->added;
+	at->straight = length;
+	at->cornered = meeting != NULL;
+	at->arc = arc;
+	if (meeting == NULL)
+		return;
+	at->came_straight = meeting->before;
+	at->came_last = meeting->last;
+	for (uint32_t row = 0; row < passo_path_rows(path); row++)
+		at->came[row] = meeting->from[row];
+	path->rounded_at = path->added;
+	path->rounded = length;
+}
+
+#endif
