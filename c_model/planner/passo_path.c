@@ -90,23 +90,22 @@ void passo_path_close(struct passo_path_planner *path)
 	path->open = false;
 }
 
-/* Whether the ramps have passed a corner whose rounding may span the newest line. */
-static bool is_relied_on(const struct passo_path_planner *path)
+/* Whether the newest line can still become another one. */
+static bool is_open(const struct passo_path_planner *path, const struct passo_path_move *move)
+{
+	return !path->rest && (path->planned + 1 != path->added || !path->started)
+	    && newest(path)->output == move->output && path->feed == move->feed;
+}
+
+/* Whether the newest line goes straight on from one of another feed: that is where a corner behind it stays. */
+static bool ends_straight(const struct passo_path_planner *path)
 {
 #ifdef PASSO_WITHOUT_ROUNDING
 	(void)path;
 	return false;
 #else
-	return passo_path_spans(path) && path->at.cornered && path->at.first <= path->planned
-	    && path->at.first + 1 != path->added;
+	return passo_path_spans(path) && path->at.first + 1 != path->added;
 #endif
-}
-
-/* Whether the newest line can still become another one. */
-static bool is_open(const struct passo_path_planner *path, const struct passo_path_move *move)
-{
-	return !path->rest && (path->planned + 1 != path->added || !path->started) && !is_relied_on(path)
-	    && newest(path)->output == move->output && path->feed == move->feed;
 }
 
 /* Whether a short line goes straight on from the newest one, which is too long to be held back. */
@@ -123,6 +122,8 @@ static bool merge(struct passo_path_planner *path, const struct passo_path_move 
 	if (!is_open(path, move))
 		return false;
 	const struct passo_path_merged merged = passo_path_off(path, move->target);
+	if (ends_straight(path) && merged.off > path->substeps_per_mm >> 10) /* 2^-26 mm, in UQ.16 substeps */
+		return false;
 	if (path->open ? merged.off >= path->tolerance : !goes_on(path, &merged))
 		return false;
 	const struct passo_path_place at = path->at;

@@ -84,7 +84,8 @@ static void find_rounding(const struct passo_path_planner *path, const struct pa
 	const struct passo_path_rounding *rounding = &corner->rounding;
 	const bool before = !corner->bends_before || corner->point[0].index > 0;
 	const bool behind = !corner->bends_behind || corner->point[1].index > 0;
-	const uint32_t sides = before && behind ? 1 : 2;
+	const bool whole = passo_path_smaller(rounding->before, rounding->behind) >= corner->arc;
+	const uint32_t sides = before && behind && whole ? 1 : 2;
 
 	for (unsigned i = 0; i < 2 * PASSO_PATH_SHARES; i++)
 		item->lone[i / PASSO_PATH_SHARES][i % PASSO_PATH_SHARES] = (struct passo_path_share){0, 0};

@@ -63,7 +63,7 @@ uint64_t passo_path_spread(struct passo_path_planner *path, const struct passo_p
 			return passed + length / 2;
 		bend_half(path, meeting, behind, index, 1 - near, curvature);
 		passed += length;
-		if (behind ? index == meeting->end : index <= path->planned + 1)
+		if (behind ? index == meeting->end : index <= path->planned)
 			return passed; /* the ramps are there */
 		index = behind ? index + 1 : index - 1;
 		length = index == path->added ? meeting->newest_length
@@ -154,8 +154,8 @@ static void round_start(
 	corner.arc = at->arc;
 	first->rest = false;
 	first->bend = passo_path_round(path, &meeting, &corner, first);
-	passo_path_limit(path, at->first - 1);
-	passo_path_limit(path, at->first);
+	for (uint32_t index = at->first - 1; index <= at->first + 1 && index < path->added; index++)
+		passo_path_limit(path, index);
 	passo_path_rest_if_slow(path, first);
 	path->rounded_at = at->first;
 	path->rounded = straight;
