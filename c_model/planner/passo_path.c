@@ -271,7 +271,7 @@ void passo_path_look_back(struct passo_path_planner *path)
 
 	for (uint32_t index = path->added; index-- > path->planned && index >= path->final;) {
 		item = (item == path->items ? item + path->capacity : item) - 1;
-		const uint64_t over = passo_path_smaller(sharp, (uint64_t)item->substeps << 32);
+		const uint64_t over = passo_path_smaller(sharp, (uint64_t)item->substeps << 31);
 		const uint64_t reach = passo_path_is_soft(path) ? passo_path_soft_reach(path, index)
 		                                                : reach_of(path, index, item, next, over);
 
@@ -279,7 +279,7 @@ void passo_path_look_back(struct passo_path_planner *path)
 			final = index;
 		if (reach == item->reach && over == 0 && !is_changed(path, index))
 			break;
-		sharp -= over;
+		sharp -= passo_path_smaller(sharp, (uint64_t)item->substeps << 32);
 		item->reach = reach;
 		next = item;
 	}

@@ -125,6 +125,20 @@ void passo_path_set_points(struct passo_path_planner *path, const struct passo_p
 	}
 }
 
+/* What is behind the last corner that the path reaches, before what has changed, can become faster. */
+static void unsettle(struct passo_path_planner *path)
+{
+	uint32_t index = path->bent;
+
+	while (index > path->planned) {
+		const struct passo_path_item *item = passo_path_item(path, --index);
+
+		if (item->rest || item->reach == item->corner)
+			break;
+	}
+	path->final = index < path->final ? index : path->final;
+}
+
 /* Rounds the corner at the start of the straight of the last line, if it is so long, and no ramp is there. */
 static void round_start(
     struct passo_path_planner *path, uint64_t straight, struct passo_path_item *newest, uint64_t length)
@@ -159,7 +173,7 @@ static void round_start(
 	passo_path_rest_if_slow(path, first);
 	path->rounded_at = at->first;
 	path->rounded = straight;
-	path->final = path->final < path->planned ? path->final : path->planned;
+	unsettle(path);
 }
 
 bool passo_path_goes_on(const struct passo_path_planner *path, uint64_t turn, uint64_t length)
