@@ -85,6 +85,7 @@ struct passo_path_item {
 #ifndef PASSO_WITHOUT_ROUNDING
 	uint32_t turn; /* substeps on either side over which a lone corner at its start may be rounded */
 	uint8_t begun; /* bits: halves with the curvature of the corner at the start of their straight */
+	bool point;    /* no corner, but the rounding of one, with this `bend`, ends beyond it */
 	/* of a path that falls, or rises: of the axis with most of both there, and of that which lost most */
 	struct passo_path_share lone[2][PASSO_PATH_SHARES];
 	bool valley; /* it has that where the path comes down to the corner and speeds up behind it */

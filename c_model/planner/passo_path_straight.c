@@ -76,16 +76,6 @@ uint64_t passo_path_spread(struct passo_path_planner *path, const struct passo_p
 	}
 }
 
-/* Sets what limits the start of an item that goes straight on. */
-static void limit_point(
-    struct passo_path_planner *path, uint32_t index, struct passo_path_item *point, uint64_t bend)
-{
-	point->bend = bend;
-	if (index < path->added)
-		passo_path_limit(path, index);
-	path->bent = index < path->bent ? index : path->bent;
-}
-
 /* Forgets where the rounding of the corner at the start of an item ends. */
 static void clear_points(struct passo_path_planner *path, uint32_t corner)
 {
@@ -93,8 +83,12 @@ static void clear_points(struct passo_path_planner *path, uint32_t corner)
 		const uint32_t index = path->point[behind];
 
 		if (index > path->planned && index < path->added) {
-			passo_path_item(path, index)->turn = 0;
-			limit_point(path, index, passo_path_item(path, index), PASSO_PATH_SQUARE_MAX);
+			struct passo_path_item *item = passo_path_item(path, index);
+
+			item->point = false;
+			item->turn = 0;
+			item->bend = PASSO_PATH_SQUARE_MAX;
+			path->bent = index < path->bent ? index : path->bent;
 		}
 		path->point[behind] = 0;
 	}
@@ -103,11 +97,6 @@ static void clear_points(struct passo_path_planner *path, uint32_t corner)
 void passo_path_set_points(struct passo_path_planner *path, const struct passo_path_meeting *meeting,
     const struct passo_path_corner *corner, const struct passo_path_item *item)
 {
-	const uint64_t both = corner->rounding.before + corner->rounding.behind;
-	/* there it turns over all of the rounding */
-	const uint64_t bend = passo_path_smaller(
-	    passo_mul_div(item->bend, both << (PASSO_PATH_UNIT_BITS - 16), corner->over), PASSO_PATH_SQUARE_MAX);
-
 	clear_points(path, meeting->index);
 	path->pointed = meeting->index;
 	for (unsigned behind = 0; behind < 2; behind++) {
@@ -121,7 +110,9 @@ void passo_path_set_points(struct passo_path_planner *path, const struct passo_p
 			point->lone[i / PASSO_PATH_SHARES][i % PASSO_PATH_SHARES] =
 			    item->lone[i / PASSO_PATH_SHARES][i % PASSO_PATH_SHARES];
 		point->turn = (uint32_t)(corner->point[behind].left >> 16);
-		limit_point(path, index, point, bend);
+		point->point = true;
+		point->bend = item->bend;
+		path->bent = index < path->bent ? index : path->bent;
 	}
 }
 
