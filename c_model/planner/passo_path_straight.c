@@ -59,9 +59,11 @@ uint64_t passo_path_spread(struct passo_path_planner *path, const struct passo_p
 		return reach;
 	for (;;) {
 		bend_half(path, meeting, behind, index, near, curvature);
-		if (reach < passed + length)
+		if (reach < passed + length - length / 4)
 			return passed + length / 2;
 		bend_half(path, meeting, behind, index, 1 - near, curvature);
+		if (reach < passed + length)
+			return reach;
 		passed += length;
 		if (behind ? index == meeting->end : index <= path->planned)
 			return passed; /* the ramps are there */
