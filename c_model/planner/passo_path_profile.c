@@ -32,12 +32,18 @@ static unsigned put(struct passo_path_part *parts, unsigned count, enum passo_pa
 #ifndef PASSO_WITHOUT_ROUNDING
 /* By this part of its square a path may be slower in a valley. */
 #define VALLEY 128u
+/* By this part it may be above it where the rounding of the valley ends, in a line that goes straight on. */
+#define POINT 8u
 
 /* Whether the path passes the corner at the start of an item at the highest speed there, from which it need
  * not come down any further. A ramp that comes down to there ends within a tick. */
 static bool is_valley(const struct passo_path_item *item, uint64_t square)
 {
-	return item->valley && item->reach == item->corner && square + square / VALLEY >= item->reach;
+	const uint64_t above = square + square / VALLEY;
+
+	if (item->point)
+		return item->valley && above >= item->bend && square - square / POINT <= item->bend;
+	return item->valley && item->reach == item->corner && above >= item->reach;
 }
 
 uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, uint32_t line, bool rises,

@@ -113,6 +113,7 @@ void passo_path_set_points(struct passo_path_planner *path, const struct passo_p
 			    item->lone[i / PASSO_PATH_SHARES][i % PASSO_PATH_SHARES];
 		point->turn = (uint32_t)(corner->point[behind].left >> 16);
 		point->point = true;
+		point->valley = item->valley;
 		point->bend = item->bend;
 		path->bent = index < path->bent ? index : path->bent;
 	}
