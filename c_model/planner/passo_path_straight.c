@@ -54,13 +54,15 @@ uint64_t passo_path_spread(struct passo_path_planner *path, const struct passo_p
 	uint32_t index = behind ? meeting->index : meeting->index - 1;
 	uint64_t passed = 0, length = behind ? meeting->next : meeting->last;
 
+	const bool part = reach < corner->arc; /* of a longer curve */
+
 	corner->point[behind].index = 0;
 	if (reach < length / 2)
 		return reach;
 	for (;;) {
 		bend_half(path, meeting, behind, index, near, curvature);
-		if (reach < passed + length - length / 4)
-			return passed + length / 2;
+		if (reach < passed + (part ? length / 16 * 12 : length - length / 4))
+			return reach < passed + length / 2 ? reach : passed + length / 2;
 		bend_half(path, meeting, behind, index, 1 - near, curvature);
 		if (reach < passed + length)
 			return reach;
@@ -70,7 +72,7 @@ uint64_t passo_path_spread(struct passo_path_planner *path, const struct passo_p
 		index = behind ? index + 1 : index - 1;
 		length = index == path->added ? meeting->newest_length
 		                              : (uint64_t)passo_path_item(path, index)->substeps << 16;
-		if (reach < passed + length / 2) {
+		if (reach < passed + (part ? length / 16 * 4 : length / 2)) {
 			corner->point[behind].index = behind ? index : index + 1;
 			corner->point[behind].left = reach - passed;
 			return reach;
