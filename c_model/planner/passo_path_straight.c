@@ -73,8 +73,10 @@ uint64_t passo_path_spread(struct passo_path_planner *path, const struct passo_p
 		length = index == path->added ? meeting->newest_length
 		                              : (uint64_t)passo_path_item(path, index)->substeps << 16;
 		if (reach < passed + (part ? length / 16 * 4 : length / 2)) {
-			corner->point[behind].index = behind ? index : index + 1;
-			corner->point[behind].left = reach - passed;
+			if (reach - passed >= reach / 16) {
+				corner->point[behind].index = behind ? index : index + 1;
+				corner->point[behind].left = reach - passed;
+			}
 			return reach;
 		}
 	}
