@@ -84,8 +84,8 @@ static void find_rounding(const struct passo_path_planner *path, const struct pa
 	const struct passo_path_rounding *rounding = &corner->rounding;
 	const bool before = !corner->bends_before || corner->point[0].index > 0;
 	const bool behind = !corner->bends_behind || corner->point[1].index > 0;
-	const bool whole = passo_path_smaller(rounding->before, rounding->behind) >= corner->arc;
-	const uint32_t sides = before && behind && whole ? 1 : 2;
+	const bool lone = passo_path_smaller(rounding->before, rounding->behind) >= corner->arc;
+	const uint32_t sides = before && behind && lone ? 1 : 2;
 
 	for (unsigned i = 0; i < 2 * PASSO_PATH_SHARES; i++)
 		item->lone[i / PASSO_PATH_SHARES][i % PASSO_PATH_SHARES] = (struct passo_path_share){0, 0};
@@ -158,17 +158,34 @@ uint64_t passo_path_round(struct passo_path_planner *path, const struct passo_pa
 	struct passo_path_rounding *rounding = &corner->rounding;
 
 	*rounding = rounding_of(corner->arc, meeting->before, meeting->behind);
-	for (unsigned i = 0; passo_path_spans(path) && i < 2; i++) {
+#ifndef PASSO_WITHOUT_ROUNDING
+	if (passo_path_spans(path)) {
+		passo_path_unbend(path, meeting, false, rounding->before);
+		passo_path_unbend(path, meeting, true, rounding->behind);
+	}
+	corner->point[0].index = corner->point[1].index = 0;
+	corner->whole = passo_path_spans(path)
+	             && passo_path_smaller(rounding->before, rounding->behind) >= corner->arc
+	             && passo_path_is_known(path, meeting, rounding->before);
+	item->whole = corner->whole;
+	item->point = PASSO_PATH_CORNER;
+	item->away = 0;
+	for (unsigned i = 0; passo_path_spans(path) && !corner->whole && i < 2; i++) {
 		rounding->before = passo_path_spread(path, meeting, corner, false, rounding->before, NULL);
 		rounding->behind = passo_path_spread(path, meeting, corner, true, rounding->behind, NULL);
 		if (i == 0)
 			*rounding = rounding_of(corner->arc, 2 * rounding->before, 2 * rounding->behind);
 	}
+	const bool whole = corner->whole;
+#else
+	const bool whole = false;
+#endif
 	const uint64_t both = rounding->before + rounding->behind;
 	corner->over = passo_path_smaller(corner->arc, both) << (PASSO_PATH_UNIT_BITS - 16);
-	corner->bends_before = rounding->before >= meeting->last / 2;
-	corner->bends_behind = rounding->behind >= meeting->next / 2;
-	bend_lines(path, meeting, corner);
+	corner->bends_before = !whole && rounding->before >= meeting->last / 2;
+	corner->bends_behind = !whole && rounding->behind >= meeting->next / 2;
+	if (!whole)
+		bend_lines(path, meeting, corner);
 	item->arc = 0;
 	if (both < corner->arc)
 		item->arc = (corner->bends_before ? PASSO_PATH_ARC_BEFORE : 0)

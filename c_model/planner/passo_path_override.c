@@ -10,7 +10,7 @@
 static uint64_t bend_of(const struct passo_path_item *item)
 {
 #ifndef PASSO_WITHOUT_ROUNDING
-	if (item->point)
+	if (item->point != PASSO_PATH_CORNER)
 		return PASSO_PATH_SQUARE_MAX;
 #endif
 	return item->bend;

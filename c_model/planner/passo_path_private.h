@@ -302,6 +302,7 @@ struct passo_path_corner {
 	uint64_t over;                   /* UQ.30 substeps, in which it turns at a constant speed */
 	bool bends_before, bends_behind; /* the lines are parts of a curve */
 #ifndef PASSO_WITHOUT_ROUNDING
+	bool whole;               /* it is lone: rounded as far as it needs, though it may be over several lines */
 	struct passo_path_point { /* on each side, where a straight of several lines is rounded no farther */
 		uint32_t index;   /* than a part of the line there: it begins or ends with this item; 0: none */
 		uint64_t left;    /* that part, UQ32.16 substeps */
@@ -368,7 +369,16 @@ static inline bool passo_path_goes_on(const struct passo_path_planner *path, uin
 	return false;
 }
 #else
-/* Where a rounding ends in a part of a line of a straight, that line is passed as one beside the corner. */
+/* Takes the curvature of a corner off the lines on one side of it, so far. */
+void passo_path_unbend(struct passo_path_planner *path, const struct passo_path_meeting *meeting, bool behind,
+    uint64_t reach);
+
+/* Whether the lines before a corner are known that far. */
+bool passo_path_is_known(
+    const struct passo_path_planner *path, const struct passo_path_meeting *meeting, uint64_t reach);
+
+/* Where a rounding ends in a part of a line of a straight, that line is passed as one beside the corner; and,
+ * of a lone corner, each one before it. */
 void passo_path_set_points(struct passo_path_planner *path, const struct passo_path_meeting *meeting,
     const struct passo_path_corner *corner, const struct passo_path_item *item);
 

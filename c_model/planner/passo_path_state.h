@@ -84,8 +84,11 @@ struct passo_path_item {
 	bool rapid;         /* its feed is PASSO_PATH_RAPID */
 #ifndef PASSO_WITHOUT_ROUNDING
 	uint32_t turn; /* substeps on either side over which a lone corner at its start may be rounded */
+	bool whole;    /* a lone corner, whose rounding may span several lines */
 	uint8_t begun; /* bits: halves with the curvature of the corner at the start of their straight */
-	bool point;    /* no corner, but the rounding of one, with this `bend`, ends beyond it */
+	/* no corner, but one with this `bend`, that is so many substeps away, is rounded to beyond it: */
+	uint32_t away;
+	enum passo_path_side { PASSO_PATH_CORNER, PASSO_PATH_BEFORE, PASSO_PATH_BEHIND } point; /* that side */
 	/* of a path that falls, or rises: of the axis with most of both there, and of that which lost most */
 	struct passo_path_share lone[2][PASSO_PATH_SHARES];
 	bool valley; /* it has that where the path comes down to the corner and speeds up behind it */
@@ -178,7 +181,7 @@ struct passo_path_planner {
 	uint64_t passing; /* the square at which they pass the start of item `planned` */
 	uint64_t rounded;    /* the corner before a straight is rounded for this length of it; */
 	uint32_t rounded_at; /* this item begins it */
-	uint32_t point[2];   /* items at whose starts the rounding of a corner, before it and behind it, ends; */
+	uint32_t point[2];   /* of the items within the rounding of a corner the first and the last one; */
 	uint32_t pointed;    /* it is that at the start of this item */
 	uint32_t bent;       /* what is before this item is as it was when `reach` was found */
 #endif

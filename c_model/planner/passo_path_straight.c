@@ -30,7 +30,13 @@ static struct passo_path_item *item_at(
 	return index == path->added ? meeting->newest : passo_path_item(path, index);
 }
 
-/* Of a half that has no curvature of another corner, the curvature is replaced. */
+static uint64_t length_of(
+    const struct passo_path_planner *path, const struct passo_path_meeting *meeting, uint32_t index)
+{
+	return index == path->added ? meeting->newest_length
+	                            : (uint64_t)passo_path_item(path, index)->substeps << 16;
+}
+
 static void bend_half(struct passo_path_planner *path, const struct passo_path_meeting *meeting, bool behind,
     uint32_t index, unsigned half, const int64_t *curvature)
 {
@@ -38,13 +44,34 @@ static void bend_half(struct passo_path_planner *path, const struct passo_path_m
 
 	if (curvature == NULL)
 		return;
-	if (passo_path_spans(path) && (behind || (item->begun >> half & 1u) == 0))
-		passo_path_straighten(item, half);
 	if (behind)
 		item->begun |= (uint8_t)(1u << half);
 	passo_path_bend(path, curvature, behind ? meeting->to : meeting->from, half, item);
 	passo_path_set_fall(item);
 	path->bent = index < path->bent ? index : path->bent;
+}
+
+void passo_path_unbend(struct passo_path_planner *path, const struct passo_path_meeting *meeting, bool behind,
+    uint64_t reach)
+{
+	uint32_t index = behind ? meeting->index : meeting->index - 1;
+	uint64_t passed = 0, length = behind ? meeting->next : meeting->last;
+
+	for (;;) {
+		struct passo_path_item *item = item_at(path, meeting, index);
+
+		for (unsigned half = 0; half < PASSO_PATH_HALVES; half++) {
+			if (behind || (item->begun >> half & 1u) == 0)
+				passo_path_straighten(item, half);
+		}
+		passo_path_set_fall(item);
+		path->bent = index < path->bent ? index : path->bent;
+		passed += length;
+		if (passed >= reach || index == (behind ? meeting->end : path->planned))
+			return;
+		index = behind ? index + 1 : index - 1;
+		length = length_of(path, meeting, index);
+	}
 }
 
 uint64_t passo_path_spread(struct passo_path_planner *path, const struct passo_path_meeting *meeting,
@@ -70,8 +97,7 @@ uint64_t passo_path_spread(struct passo_path_planner *path, const struct passo_p
 		if (behind ? index == meeting->end : index <= path->planned)
 			return passed; /* the ramps are there */
 		index = behind ? index + 1 : index - 1;
-		length = index == path->added ? meeting->newest_length
-		                              : (uint64_t)passo_path_item(path, index)->substeps << 16;
+		length = length_of(path, meeting, index);
 		if (reach < passed + (part ? length / 16 * 4 : length / 2)) {
 			if (reach - passed >= reach / 16) {
 				corner->point[behind].index = behind ? index : index + 1;
@@ -82,21 +108,66 @@ uint64_t passo_path_spread(struct passo_path_planner *path, const struct passo_p
 	}
 }
 
+bool passo_path_is_known(
+    const struct passo_path_planner *path, const struct passo_path_meeting *meeting, uint64_t reach)
+{
+	uint32_t index = meeting->index - 1;
+
+	for (uint64_t passed = meeting->last; passed < reach; passed += length_of(path, meeting, index)) {
+		if (index-- <= path->planned)
+			return false;
+	}
+	return true;
+}
+
 /* Forgets where the rounding of the corner at the start of an item ends. */
 static void clear_points(struct passo_path_planner *path, uint32_t corner)
 {
-	for (unsigned behind = 0; path->pointed == corner && behind < 2; behind++) {
-		const uint32_t index = path->point[behind];
+	if (path->pointed != corner)
+		return;
+	for (uint32_t index = path->point[0]; index <= path->point[1]; index++) {
+		struct passo_path_item *item = passo_path_item(path, index);
 
-		if (index > path->planned && index < path->added) {
-			struct passo_path_item *item = passo_path_item(path, index);
+		if (index <= path->planned || index >= path->added || item->point == PASSO_PATH_CORNER)
+			continue;
+		item->point = PASSO_PATH_CORNER;
+		item->turn = item->away = 0;
+		item->bend = PASSO_PATH_SQUARE_MAX;
+	}
+	path->bent = path->point[0] < path->bent ? path->point[0] : path->bent;
+	path->pointed = 0;
+}
 
-			item->point = false;
-			item->turn = 0;
-			item->bend = PASSO_PATH_SQUARE_MAX;
-			path->bent = index < path->bent ? index : path->bent;
-		}
-		path->point[behind] = 0;
+static void set_point(struct passo_path_planner *path, const struct passo_path_meeting *meeting, bool behind,
+    uint32_t index, const struct passo_path_item *corner)
+{
+	struct passo_path_item *point = item_at(path, meeting, index);
+
+	for (unsigned i = 0; i < 2 * PASSO_PATH_SHARES; i++)
+		point->lone[i / PASSO_PATH_SHARES][i % PASSO_PATH_SHARES] =
+		    corner->lone[i / PASSO_PATH_SHARES][i % PASSO_PATH_SHARES];
+	point->point = behind ? PASSO_PATH_BEHIND : PASSO_PATH_BEFORE;
+	point->whole = corner->whole;
+	point->turn = corner->turn;
+	point->valley = corner->valley;
+	point->bend = corner->bend;
+	path->point[behind] = index;
+	path->bent = index < path->bent ? index : path->bent;
+}
+
+/* On one side of a lone corner. */
+static void set_lone(struct passo_path_planner *path, const struct passo_path_meeting *meeting, bool behind,
+    uint64_t reach, const struct passo_path_item *corner)
+{
+	uint32_t index = behind ? meeting->index : meeting->index - 1;
+
+	for (uint64_t passed = behind ? meeting->next : meeting->last; passed < reach;) {
+		const uint32_t at = behind ? index + 1 : index;
+
+		set_point(path, meeting, behind, at, corner);
+		item_at(path, meeting, at)->away = (uint32_t)(passed >> 16);
+		index = behind ? index + 1 : index - 1;
+		passed += length_of(path, meeting, index);
 	}
 }
 
@@ -105,21 +176,16 @@ void passo_path_set_points(struct passo_path_planner *path, const struct passo_p
 {
 	clear_points(path, meeting->index);
 	path->pointed = meeting->index;
+	path->point[0] = path->point[1] = meeting->index;
 	for (unsigned behind = 0; behind < 2; behind++) {
-		const uint32_t index = corner->point[behind].index;
+		const struct passo_path_point *end = &corner->point[behind];
 
-		path->point[behind] = index;
-		if (index == 0)
-			continue;
-		struct passo_path_item *point = item_at(path, meeting, index);
-		for (unsigned i = 0; i < 2 * PASSO_PATH_SHARES; i++)
-			point->lone[i / PASSO_PATH_SHARES][i % PASSO_PATH_SHARES] =
-			    item->lone[i / PASSO_PATH_SHARES][i % PASSO_PATH_SHARES];
-		point->turn = (uint32_t)(corner->point[behind].left >> 16);
-		point->point = true;
-		point->valley = item->valley;
-		point->bend = item->bend;
-		path->bent = index < path->bent ? index : path->bent;
+		if (corner->whole) {
+			set_lone(path, meeting, behind, corner->arc, item);
+		} else if (end->index > 0) {
+			set_point(path, meeting, behind, end->index, item);
+			item_at(path, meeting, end->index)->turn = (uint32_t)(end->left >> 16);
+		}
 	}
 }
 
