@@ -97,7 +97,8 @@ static bool is_open(const struct passo_path_planner *path, const struct passo_pa
 	    && newest(path)->output == move->output && path->feed == move->feed;
 }
 
-/* Whether the newest line goes straight on from one of another feed: that is where a corner behind it stays. */
+/* Whether the newest line goes straight on from one of another feed: that is where a corner behind it stays.
+ */
 static bool ends_straight(const struct passo_path_planner *path)
 {
 #ifdef PASSO_WITHOUT_ROUNDING
@@ -224,8 +225,8 @@ static uint64_t reach_of(const struct passo_path_planner *path, uint32_t index,
     const struct passo_path_item *item, const struct passo_path_item *next, uint64_t sharp)
 {
 	const uint64_t end = end_square(item, next);
-	const uint64_t behind = passo_path_larger(
-	    passo_path_flat(path, index + 1, index, false, end, true), sharp);
+	const uint64_t behind =
+	    passo_path_larger(passo_path_flat(path, index + 1, index, false, end, true), sharp);
 	/* its flat end is that of a square which it cannot exceed */
 	const uint64_t plain = reach_over(item, end, behind, behind);
 	const uint64_t before =

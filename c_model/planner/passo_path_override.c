@@ -36,7 +36,8 @@ void passo_path_limit(struct passo_path_planner *path, uint32_t index)
 	/* an arc is limited along its lines, not only at its corners; by their bends, not by the feeds that
 	 * meet there */
 	if ((before->arc & PASSO_PATH_ARC_BEHIND) > 0 && (item->arc & PASSO_PATH_ARC_BEFORE) > 0)
-		before->top = passo_path_smaller(before->top, passo_path_larger(bend_of(before), bend_of(item)));
+		before->top =
+		    passo_path_smaller(before->top, passo_path_larger(bend_of(before), bend_of(item)));
 }
 
 /* Replans the lines that no ramp has passed. */

@@ -302,9 +302,9 @@ struct passo_path_corner {
 	uint64_t over;                   /* UQ.30 substeps, in which it turns at a constant speed */
 	bool bends_before, bends_behind; /* the lines are parts of a curve */
 #ifndef PASSO_WITHOUT_ROUNDING
-	bool whole;               /* it is lone: rounded as far as it needs, though it may be over several lines */
-	struct passo_path_point { /* on each side, where a straight of several lines is rounded no farther */
-		uint32_t index;   /* than a part of the line there: it begins or ends with this item; 0: none */
+	bool whole;               /* it is lone: rounded as far as it needs, maybe over several lines */
+	struct passo_path_point { /* otherwise, on each side, the last line where it covers a small part: */
+		uint32_t index;   /* it begins, or ends, at the start of this item; 0: there is none */
 		uint64_t left;    /* that part, UQ32.16 substeps */
 	} point[2];
 #endif
@@ -312,10 +312,10 @@ struct passo_path_corner {
 
 /* What meets at the corner at the start of an item. Lengths are UQ32.16 substeps. */
 struct passo_path_meeting {
-	uint32_t index;                /* this item */
-	const int32_t *from, *to;      /* unit vectors */
-	uint64_t before, behind;       /* the straights */
-	uint64_t last, next;           /* the lines beside the corner */
+	uint32_t index;                 /* this item */
+	const int32_t *from, *to;       /* unit vectors */
+	uint64_t before, behind;        /* the straights */
+	uint64_t last, next;            /* the lines beside the corner */
 	struct passo_path_item *newest; /* that is being added */
 	uint64_t newest_length;
 	uint32_t end; /* number of the last item behind the corner */
@@ -335,8 +335,8 @@ static inline bool passo_path_spans(const struct passo_path_planner *path)
 	return passo_path_is_rounded(path) && passo_path_shape(path) == PASSO_SHAPE_LINEAR;
 }
 
-/* Up to where a rounding covers the lines on one side of a corner, in halves, if it is so long; and bends
- * them by a curvature, unless that is null. */
+/* Up to where a rounding covers the lines on one side of a corner, in halves, if it may reach so far; and
+ * bends them by a curvature, unless that is null. */
 uint64_t passo_path_spread(struct passo_path_planner *path, const struct passo_path_meeting *meeting,
     struct passo_path_corner *corner, bool behind, uint64_t reach, const int64_t *curvature);
 
@@ -370,15 +370,14 @@ static inline bool passo_path_goes_on(const struct passo_path_planner *path, uin
 }
 #else
 /* Takes the curvature of a corner off the lines on one side of it, so far. */
-void passo_path_unbend(struct passo_path_planner *path, const struct passo_path_meeting *meeting, bool behind,
-    uint64_t reach);
+void passo_path_unbend(
+    struct passo_path_planner *path, const struct passo_path_meeting *meeting, bool behind, uint64_t reach);
 
 /* Whether the lines before a corner are known that far. */
 bool passo_path_is_known(
     const struct passo_path_planner *path, const struct passo_path_meeting *meeting, uint64_t reach);
 
-/* Where a rounding ends in a part of a line of a straight, that line is passed as one beside the corner; and,
- * of a lone corner, each one before it. */
+/* Lines that a rounding covers without bending them are passed as the one beside the corner is: `item`. */
 void passo_path_set_points(struct passo_path_planner *path, const struct passo_path_meeting *meeting,
     const struct passo_path_corner *corner, const struct passo_path_item *item);
 

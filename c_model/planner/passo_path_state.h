@@ -88,7 +88,11 @@ struct passo_path_item {
 	uint8_t begun; /* bits: halves with the curvature of the corner at the start of their straight */
 	/* no corner, but one with this `bend`, that is so many substeps away, is rounded to beyond it: */
 	uint32_t away;
-	enum passo_path_side { PASSO_PATH_CORNER, PASSO_PATH_BEFORE, PASSO_PATH_BEHIND } point; /* that side */
+	enum passo_path_side {
+		PASSO_PATH_CORNER,
+		PASSO_PATH_BEFORE,
+		PASSO_PATH_BEHIND
+	} point; /* that side */
 	/* of a path that falls, or rises: of the axis with most of both there, and of that which lost most */
 	struct passo_path_share lone[2][PASSO_PATH_SHARES];
 	bool valley; /* it has that where the path comes down to the corner and speeds up behind it */
@@ -129,7 +133,8 @@ struct passo_path_place {
 	uint32_t turns; /* corners of this curve, to one side; 0: the line is in none */
 #endif
 #ifndef PASSO_WITHOUT_ROUNDING
-	/* The straight that the last line ends, of lines of several feeds, and the corner that it begins with. */
+	/* The straight that the last line ends, of lines of several feeds, and the corner that it begins
+	 * with. */
 	uint64_t straight;                 /* its length, UQ32.16 substeps */
 	uint32_t first;                    /* the item that it begins with */
 	bool cornered;                     /* it begins with a corner, before which there is: */
@@ -178,7 +183,7 @@ struct passo_path_planner {
 	int64_t offset;    /* Q31.32 substeps into item `planned` */
 	uint64_t velocity; /* UQ0.48 substeps per clock */
 #ifndef PASSO_WITHOUT_ROUNDING
-	uint64_t passing; /* the square at which they pass the start of item `planned` */
+	uint64_t passing;    /* the square at which they pass the start of item `planned` */
 	uint64_t rounded;    /* the corner before a straight is rounded for this length of it; */
 	uint32_t rounded_at; /* this item begins it */
 	uint32_t point[2];   /* of the items within the rounding of a corner the first and the last one; */

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Straights of several lines: with other feeds or outputs they stay lines of their own, but the rounding of a
- * corner may span them. It covers whole halves of them, but for the line beside the corner. A line that goes
- * straight on makes more of the straight known, and the corner at its start faster.
+ * corner may span them. That of a lone corner needs no curvature: each line within it is passed as the one
+ * beside the corner is. Others bend halves of the lines. A line that goes straight on makes more of the
+ * straight known, and the corner at its start faster.
  */
 #include <stddef.h>
 
@@ -24,6 +25,15 @@ uint64_t passo_path_spread(struct passo_path_planner *path, const struct passo_p
 
 #else
 
+/* A line that is covered by this part of it, or less, does not bend: beside a corner whose rounding is part
+ * of a longer curve, and beside another one. */
+#define CURVE_PARTS 4u
+#define CORNER_PARTS 2u
+/* All of it bends, unless so much is not covered. */
+#define FAR_PARTS 3u
+/* Less of a rounding in a line is none. */
+#define HARDLY 16u
+
 static struct passo_path_item *item_at(
     const struct passo_path_planner *path, const struct passo_path_meeting *meeting, uint32_t index)
 {
@@ -37,6 +47,7 @@ static uint64_t length_of(
 	                            : (uint64_t)passo_path_item(path, index)->substeps << 16;
 }
 
+/* Adds a curvature, unless that is null. */
 static void bend_half(struct passo_path_planner *path, const struct passo_path_meeting *meeting, bool behind,
     uint32_t index, unsigned half, const int64_t *curvature)
 {
@@ -51,8 +62,8 @@ static void bend_half(struct passo_path_planner *path, const struct passo_path_m
 	path->bent = index < path->bent ? index : path->bent;
 }
 
-void passo_path_unbend(struct passo_path_planner *path, const struct passo_path_meeting *meeting, bool behind,
-    uint64_t reach)
+void passo_path_unbend(
+    struct passo_path_planner *path, const struct passo_path_meeting *meeting, bool behind, uint64_t reach)
 {
 	uint32_t index = behind ? meeting->index : meeting->index - 1;
 	uint64_t passed = 0, length = behind ? meeting->next : meeting->last;
@@ -78,17 +89,16 @@ uint64_t passo_path_spread(struct passo_path_planner *path, const struct passo_p
     struct passo_path_corner *corner, bool behind, uint64_t reach, const int64_t *curvature)
 {
 	const unsigned near = behind ? 0 : 1;
+	const uint32_t parts = reach < corner->arc ? CURVE_PARTS : CORNER_PARTS;
 	uint32_t index = behind ? meeting->index : meeting->index - 1;
 	uint64_t passed = 0, length = behind ? meeting->next : meeting->last;
-
-	const bool part = reach < corner->arc; /* of a longer curve */
 
 	corner->point[behind].index = 0;
 	if (reach < length / 2)
 		return reach;
 	for (;;) {
 		bend_half(path, meeting, behind, index, near, curvature);
-		if (reach < passed + (part ? length / 16 * 12 : length - length / 4))
+		if (reach < passed + length - length / FAR_PARTS)
 			return reach < passed + length / 2 ? reach : passed + length / 2;
 		bend_half(path, meeting, behind, index, 1 - near, curvature);
 		if (reach < passed + length)
@@ -98,8 +108,8 @@ uint64_t passo_path_spread(struct passo_path_planner *path, const struct passo_p
 			return passed; /* the ramps are there */
 		index = behind ? index + 1 : index - 1;
 		length = length_of(path, meeting, index);
-		if (reach < passed + (part ? length / 16 * 4 : length / 2)) {
-			if (reach - passed >= reach / 16) {
+		if (reach < passed + length / parts) {
+			if (reach - passed >= reach / HARDLY) {
 				corner->point[behind].index = behind ? index : index + 1;
 				corner->point[behind].left = reach - passed;
 			}
@@ -120,7 +130,7 @@ bool passo_path_is_known(
 	return true;
 }
 
-/* Forgets where the rounding of the corner at the start of an item ends. */
+/* Forgets which items are within the rounding of the corner at the start of an item. */
 static void clear_points(struct passo_path_planner *path, uint32_t corner)
 {
 	if (path->pointed != corner)
@@ -138,6 +148,7 @@ static void clear_points(struct passo_path_planner *path, uint32_t corner)
 	path->pointed = 0;
 }
 
+/* A corner is rounded to beyond the start of an item. */
 static void set_point(struct passo_path_planner *path, const struct passo_path_meeting *meeting, bool behind,
     uint32_t index, const struct passo_path_item *corner)
 {
@@ -203,7 +214,8 @@ static void unsettle(struct passo_path_planner *path)
 	path->final = index < path->final ? index : path->final;
 }
 
-/* Rounds the corner at the start of the straight of the last line, if it is so long, and no ramp is there. */
+/* Rounds the corner at the start of the straight of the last line, which is known to be so long, unless a
+ * ramp is there. */
 static void round_start(
     struct passo_path_planner *path, uint64_t straight, struct passo_path_item *newest, uint64_t length)
 {
@@ -243,7 +255,8 @@ static void round_start(
 bool passo_path_goes_on(const struct passo_path_planner *path, uint64_t turn, uint64_t length)
 {
 	const uint64_t shorter = passo_path_smaller(length, path->at.length);
-	const uint64_t off = passo_mul_shift((uint64_t)passo_isqrt64(turn) << 8, shorter, PASSO_PATH_UNIT_BITS);
+	const uint64_t off =
+	    passo_mul_shift((uint64_t)passo_isqrt64(turn) << 8, shorter, PASSO_PATH_UNIT_BITS);
 
 	return passo_path_spans(path) && off <= path->substeps_per_mm >> 7; /* 2^-31 mm, in UQ.24 substeps */
 }
