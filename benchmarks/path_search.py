@@ -3,6 +3,7 @@
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 from hypothesis import HealthCheck, Phase, given, settings, target
@@ -163,5 +164,15 @@ def search(
     try:
         drawn()
     except BeyondError as error:
-        return error
+        return with_fewer_pieces(error, check)
     return None
+
+
+def with_fewer_pieces(error: BeyondError, check: Check) -> BeyondError:
+    """Without those that its kind of fault does not need: a library that shrinks gives up before."""
+    for i in reversed(range(len(error.case.pieces))):
+        case = replace(error.case, pieces=error.case.pieces[:i] + error.case.pieces[i + 1 :])
+        text = check(case).faults.get(error.kind) if case.pieces else None
+        if text is not None:
+            return with_fewer_pieces(BeyondError(error.kind, case, text), check)
+    return error

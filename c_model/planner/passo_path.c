@@ -56,13 +56,11 @@ static enum passo_plan_error add(struct passo_path_planner *path, const struct p
 {
 	struct passo_path_item *item = passo_path_item(path, path->added);
 	struct passo_path_item made = {.output = move->output, .dwell = path->dwell, .rest = path->rest};
-	const struct passo_path_place before = path->at;
 	const enum passo_plan_error error = passo_path_measure(path, move, &made);
 
 	if (error != PASSO_PLAN_OK || made.substeps == 0)
 		return error;
 	*item = made;
-	path->before = before;
 	path->begins = path->rest;
 	path->feed = move->feed;
 	path->wanted = item->feed;

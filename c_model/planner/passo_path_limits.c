@@ -204,6 +204,7 @@ enum passo_plan_error passo_path_measure(
 	if (substeps > PASSO_SUBSTEPS_MAX)
 		return PASSO_PLAN_TOO_LONG;
 
+	path->before = path->at;
 	item->substeps = (uint32_t)substeps;
 	limit_line(path, unit, move->feed, item);
 	if (path->rest) {

@@ -302,10 +302,11 @@ struct passo_path_corner {
 	uint64_t over;                   /* UQ.30 substeps, in which it turns at a constant speed */
 	bool bends_before, bends_behind; /* the lines are parts of a curve */
 #ifndef PASSO_WITHOUT_ROUNDING
-	bool whole;               /* it is lone: rounded as far as it needs, maybe over several lines */
-	struct passo_path_point { /* otherwise, on each side, the last line where it covers a small part: */
-		uint32_t index;   /* it begins, or ends, at the start of this item; 0: there is none */
-		uint64_t left;    /* that part, UQ32.16 substeps */
+	bool whole; /* it is lone: rounded as far as it needs, maybe over several lines */
+	struct passo_path_part_covered { /* otherwise, on each side, the last line where it covers a small
+	                                    part: */
+		uint32_t index;          /* it begins, or ends, at the start of this item; 0: there is none */
+		uint64_t left;           /* that part, UQ32.16 substeps */
 	} point[2];
 #endif
 };

@@ -44,6 +44,12 @@ static bool is_valley(const struct passo_path_item *item, uint64_t square)
 	return item->valley && item->reach == item->corner && above >= item->reach;
 }
 
+/* UQ32.32 substeps. */
+static uint64_t away_of(const struct passo_path_item *item)
+{
+	return (uint64_t)item->turn * item->away << 16;
+}
+
 uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, uint32_t line, bool rises,
     uint64_t square, bool valley)
 {
@@ -73,14 +79,14 @@ uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, 
 		if (left < lost)
 			flat = passo_path_larger(flat, ((uint64_t)item->turn << 32) / lost * (lost - left));
 	}
-	flat = flat > (uint64_t)item->away << 32 ? flat - ((uint64_t)item->away << 32) : 0;
-	return passo_path_smaller(flat, (uint64_t)length << 32);
+	const uint64_t away = away_of(item);
+	return flat > away ? passo_path_smaller(flat - away, (uint64_t)length << 32) : 0;
 }
 
 /* Length beside the start of an item over which a corner there, or farther away, is rounded. */
 static uint64_t turn_of(const struct passo_path_item *item)
 {
-	return (uint64_t)(item->turn > item->away ? item->turn - item->away : 0) << 32;
+	return ((uint64_t)item->turn << 32) - away_of(item);
 }
 #endif
 

@@ -59,6 +59,10 @@ struct passo_path_share {
 };
 
 #define PASSO_PATH_SHARES 2u
+
+/* The start of a line is a corner; or it goes straight on, and a corner behind it, or before it, is rounded
+ * to beyond it: it has `bend` and `turn` of that. */
+enum passo_path_point { PASSO_PATH_CORNER, PASSO_PATH_BEFORE, PASSO_PATH_BEHIND };
 #endif
 
 /* A line of the path, private. Squares are those of velocities, UQ0.64 (substeps per clock)^2. */
@@ -83,16 +87,14 @@ struct passo_path_item {
 	                       and with half of this one (bit 1) */
 	bool rapid;         /* its feed is PASSO_PATH_RAPID */
 #ifndef PASSO_WITHOUT_ROUNDING
+	uint8_t begun
+	    : 2; /* halves, bit by bit, with the curvature of the corner at the start of their straight */
+	uint8_t point : 2; /* enum passo_path_point */
+	bool whole : 1;    /* the corner is lone, and its rounding may span several lines */
+	uint16_t away;     /* of a point: 65,536ths of `turn` that are between it and the corner */
+#endif
+#ifndef PASSO_WITHOUT_ROUNDING
 	uint32_t turn; /* substeps on either side over which a lone corner at its start may be rounded */
-	bool whole;    /* a lone corner, whose rounding may span several lines */
-	uint8_t begun; /* bits: halves with the curvature of the corner at the start of their straight */
-	/* no corner, but one with this `bend`, that is so many substeps away, is rounded to beyond it: */
-	uint32_t away;
-	enum passo_path_side {
-		PASSO_PATH_CORNER,
-		PASSO_PATH_BEFORE,
-		PASSO_PATH_BEHIND
-	} point; /* that side */
 	/* of a path that falls, or rises: of the axis with most of both there, and of that which lost most */
 	struct passo_path_share lone[2][PASSO_PATH_SHARES];
 	bool valley; /* it has that where the path comes down to the corner and speeds up behind it */

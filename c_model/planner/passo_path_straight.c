@@ -56,7 +56,7 @@ static void bend_half(struct passo_path_planner *path, const struct passo_path_m
 	if (curvature == NULL)
 		return;
 	if (behind)
-		item->begun |= (uint8_t)(1u << half);
+		item->begun |= half > 0 ? 2u : 1u;
 	passo_path_bend(path, curvature, behind ? meeting->to : meeting->from, half, item);
 	passo_path_set_fall(item);
 	path->bent = index < path->bent ? index : path->bent;
@@ -176,7 +176,7 @@ static void set_lone(struct passo_path_planner *path, const struct passo_path_me
 		const uint32_t at = behind ? index + 1 : index;
 
 		set_point(path, meeting, behind, at, corner);
-		item_at(path, meeting, at)->away = (uint32_t)(passed >> 16);
+		item_at(path, meeting, at)->away = (uint16_t)passo_mul_div(passed, UINT16_MAX, reach);
 		index = behind ? index + 1 : index - 1;
 		passed += length_of(path, meeting, index);
 	}
@@ -189,7 +189,7 @@ void passo_path_set_points(struct passo_path_planner *path, const struct passo_p
 	path->pointed = meeting->index;
 	path->point[0] = path->point[1] = meeting->index;
 	for (unsigned behind = 0; behind < 2; behind++) {
-		const struct passo_path_point *end = &corner->point[behind];
+		const struct passo_path_part_covered *end = &corner->point[behind];
 
 		if (corner->whole) {
 			set_lone(path, meeting, behind, corner->arc, item);
