@@ -52,11 +52,13 @@ void passo_path_rest_if_slow(const struct passo_path_planner *path, struct passo
 		item->corner = 0;
 }
 
-static enum passo_plan_error add(struct passo_path_planner *path, const struct passo_path_move *move)
+/* Adds a line, or replaces the newest one, which has been taken off. */
+static enum passo_plan_error add(
+    struct passo_path_planner *path, const struct passo_path_move *move, bool instead)
 {
 	struct passo_path_item *item = passo_path_item(path, path->added);
 	struct passo_path_item made = {.output = move->output, .dwell = path->dwell, .rest = path->rest};
-	const enum passo_plan_error error = passo_path_measure(path, move, &made);
+	const enum passo_plan_error error = passo_path_measure(path, move, instead, &made);
 
 	if (error != PASSO_PLAN_OK || made.substeps == 0)
 		return error;
@@ -125,19 +127,16 @@ static bool merge(struct passo_path_planner *path, const struct passo_path_move 
 		return false;
 	if (path->open ? merged.off >= path->tolerance : !goes_on(path, &merged))
 		return false;
-	const struct passo_path_place at = path->at;
 	const uint32_t dwell = path->dwell;
 
-	path->at = path->before;
 	path->added--;
 	path->rest = path->begins;
 	path->dwell = passo_path_item(path, path->added)->dwell;
-	if (add(path, move) == PASSO_PLAN_OK) {
+	if (add(path, move, true) == PASSO_PLAN_OK) {
 		path->merged = merged;
 		return true;
 	}
 	path->added++;
-	path->at = at;
 	path->rest = false;
 	path->dwell = dwell;
 	return false;
@@ -150,7 +149,7 @@ enum passo_plan_error passo_path_add(struct passo_path_planner *path, const stru
 	if (passo_path_room(path) == 0)
 		return PASSO_PLAN_PATH_FULL;
 	passo_path_close(path);
-	return add(path, move);
+	return add(path, move, false);
 }
 
 void passo_path_tolerance(struct passo_path_planner *path, uint64_t tolerance)

@@ -43,8 +43,18 @@ static void bend_lines(struct passo_path_planner *path, const struct passo_path_
 
 		curvature[axis] = turn < 0 ? -size : size;
 	}
+#ifdef PASSO_WITHOUT_ROUNDING
+	struct passo_path_item *last = passo_path_item(path, meeting->index - 1);
+
+	if (corner->bends_before)
+		passo_path_bend(path, curvature, meeting->from, 0, last);
+	passo_path_set_fall(last);
+	if (corner->bends_behind)
+		passo_path_bend(path, curvature, meeting->to, 0, meeting->newest);
+#else
 	passo_path_spread(path, meeting, corner, false, rounding->before, curvature);
 	passo_path_spread(path, meeting, corner, true, rounding->behind, curvature);
+#endif
 }
 
 #ifndef PASSO_WITHOUT_ROUNDING
@@ -152,21 +162,33 @@ bool passo_path_find_turn(const struct passo_path_planner *path, const int32_t *
 	return corner->turn >= 4;
 }
 
-uint64_t passo_path_round(struct passo_path_planner *path, const struct passo_path_meeting *meeting,
+static bool is_whole(const struct passo_path_corner *corner)
+{
+#ifdef PASSO_WITHOUT_ROUNDING
+	(void)corner;
+	return false;
+#else
+	return corner->whole;
+#endif
+}
+
+/* How far the rounding reaches over lines that go straight on. */
+static void span_lines(struct passo_path_planner *path, const struct passo_path_meeting *meeting,
     struct passo_path_corner *corner, struct passo_path_item *item)
 {
+#ifdef PASSO_WITHOUT_ROUNDING
+	(void)path, (void)meeting, (void)corner, (void)item;
+#else
 	struct passo_path_rounding *rounding = &corner->rounding;
 
-	*rounding = rounding_of(corner->arc, meeting->before, meeting->behind);
-#ifndef PASSO_WITHOUT_ROUNDING
+	corner->point[0].index = corner->point[1].index = 0;
+	corner->whole = false;
 	if (passo_path_spans(path)) {
 		passo_path_unbend(path, meeting, false, rounding->before);
 		passo_path_unbend(path, meeting, true, rounding->behind);
+		corner->whole = passo_path_smaller(rounding->before, rounding->behind) >= corner->arc
+		             && passo_path_is_known(path, meeting, rounding->before);
 	}
-	corner->point[0].index = corner->point[1].index = 0;
-	corner->whole = passo_path_spans(path)
-	             && passo_path_smaller(rounding->before, rounding->behind) >= corner->arc
-	             && passo_path_is_known(path, meeting, rounding->before);
 	item->whole = corner->whole;
 	item->point = PASSO_PATH_CORNER;
 	item->away = 0;
@@ -176,15 +198,21 @@ uint64_t passo_path_round(struct passo_path_planner *path, const struct passo_pa
 		if (i == 0)
 			*rounding = rounding_of(corner->arc, 2 * rounding->before, 2 * rounding->behind);
 	}
-	const bool whole = corner->whole;
-#else
-	const bool whole = false;
 #endif
+}
+
+uint64_t passo_path_round(struct passo_path_planner *path, const struct passo_path_meeting *meeting,
+    struct passo_path_corner *corner, struct passo_path_item *item)
+{
+	struct passo_path_rounding *rounding = &corner->rounding;
+
+	*rounding = rounding_of(corner->arc, meeting->before, meeting->behind);
+	span_lines(path, meeting, corner, item);
 	const uint64_t both = rounding->before + rounding->behind;
 	corner->over = passo_path_smaller(corner->arc, both) << (PASSO_PATH_UNIT_BITS - 16);
-	corner->bends_before = !whole && rounding->before >= meeting->last / 2;
-	corner->bends_behind = !whole && rounding->behind >= meeting->next / 2;
-	if (!whole)
+	corner->bends_before = !is_whole(corner) && rounding->before >= meeting->last / 2;
+	corner->bends_behind = !is_whole(corner) && rounding->behind >= meeting->next / 2;
+	if (!is_whole(corner))
 		bend_lines(path, meeting, corner);
 	item->arc = 0;
 	if (both < corner->arc)
@@ -210,9 +238,11 @@ static void go_on(struct passo_path_planner *path, const int32_t *unit, struct p
 
 	item->arc = PASSO_PATH_ARC_BEFORE | PASSO_PATH_ARC_BEHIND;
 	passo_path_begin_straight(path);
-	passo_path_bend(path, STRAIGHT, path->at.direction, 1, last);
+	if (passo_path_is_rounded(path)) {
+		passo_path_bend(path, STRAIGHT, path->at.direction, 1, last);
+		passo_path_bend(path, STRAIGHT, unit, 0, item);
+	}
 	passo_path_set_fall(last);
-	passo_path_bend(path, STRAIGHT, unit, 0, item);
 }
 
 uint64_t passo_path_limit_corner(

@@ -283,10 +283,10 @@ uint64_t passo_path_change(const struct passo_path_planner *path, uint64_t slope
 /* Whether the map of motors has an inverse, room, and one scale for the axes of each motor. */
 bool passo_path_has_motors(const struct passo_path_settings *settings);
 
-/* Fills in the geometry and the limits of a line, and remembers it as the last one; *substeps is 0 if it is
- * too short to be a line. */
-enum passo_plan_error passo_path_measure(
-    struct passo_path_planner *path, const struct passo_path_move *move, struct passo_path_item *item);
+/* Fills in the geometry and the limits of a line, and remembers it as the last one, or `instead` of that;
+ * *substeps is 0 if it is too short to be a line. After an error, or then, nothing has changed. */
+enum passo_plan_error passo_path_measure(struct passo_path_planner *path, const struct passo_path_move *move,
+    bool instead, struct passo_path_item *item);
 
 /* Where the direction changes at a corner: so long before it and behind it, UQ32.16 substeps; no farther than
  * the middle of the lines, and not on one side alone. */
@@ -336,11 +336,6 @@ static inline bool passo_path_spans(const struct passo_path_planner *path)
 	return passo_path_is_rounded(path) && passo_path_shape(path) == PASSO_SHAPE_LINEAR;
 }
 
-/* Up to where a rounding covers the lines on one side of a corner, in halves, if it may reach so far; and
- * bends them by a curvature, unless that is null. */
-uint64_t passo_path_spread(struct passo_path_planner *path, const struct passo_path_meeting *meeting,
-    struct passo_path_corner *corner, bool behind, uint64_t reach, const int64_t *curvature);
-
 #ifdef PASSO_WITHOUT_ROUNDING
 static inline uint64_t passo_path_straight(const struct passo_path_planner *path)
 {
@@ -370,6 +365,11 @@ static inline bool passo_path_goes_on(const struct passo_path_planner *path, uin
 	return false;
 }
 #else
+/* Up to where a rounding covers the lines on one side of a corner, in halves, if it may reach so far; and
+ * bends them by a curvature, unless that is null. */
+uint64_t passo_path_spread(struct passo_path_planner *path, const struct passo_path_meeting *meeting,
+    struct passo_path_corner *corner, bool behind, uint64_t reach, const int64_t *curvature);
+
 /* Takes the curvature of a corner off the lines on one side of it, so far. */
 void passo_path_unbend(
     struct passo_path_planner *path, const struct passo_path_meeting *meeting, bool behind, uint64_t reach);

@@ -8,22 +8,7 @@
 
 #include "passo_path_private.h"
 
-#ifdef PASSO_WITHOUT_ROUNDING
-
-uint64_t passo_path_spread(struct passo_path_planner *path, const struct passo_path_meeting *meeting,
-    struct passo_path_corner *corner, bool behind, uint64_t reach, const int64_t *curvature)
-{
-	const uint32_t index = behind ? meeting->index : meeting->index - 1;
-	(void)corner;
-	struct passo_path_item *item = index == path->added ? meeting->newest : passo_path_item(path, index);
-
-	if (reach >= (behind ? meeting->next : meeting->last) / 2)
-		passo_path_bend(path, curvature, behind ? meeting->to : meeting->from, 0, item);
-	passo_path_set_fall(item);
-	return reach;
-}
-
-#else
+#ifndef PASSO_WITHOUT_ROUNDING
 
 /* A line that is covered by this part of it, or less, does not bend: beside a corner whose rounding is part
  * of a longer curve, and beside another one. */
