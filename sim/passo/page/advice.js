@@ -7,6 +7,12 @@ class Advice {
     // `isTaken(word)`: whether the interpreter has a command or word; `inputs`: number of those of M66.
     constructor(rules, { letters, inputs, power }, isTaken) { Object.assign(this, { rules, letters, inputs, power, isTaken }); }
 
+    // Whether a program has what only expanded ones may have.
+    static needsExpanding(text, { expanded }) {
+        const patterns = expanded.map(pattern => new RegExp(pattern));
+        return text.split(/\r\n|\r|\n/).some(line => patterns.some(pattern => pattern.test(Advice.bare(line))));
+    }
+
     // A line without comments and blanks, in lower case.
     static bare(text) {
         const found = text.replace(/\([^)\r\n]*\)?|;[^\r\n]*/g, "").toLowerCase().replace(/[\x00-\x20]+/g, "");
@@ -22,8 +28,7 @@ class Advice {
 
     // An error of a line with the word that it is about, where that is known.
     explain(number, error, line) {
-        const { rules, letters } = this, bare = Advice.bare(line), words = Advice.words(bare);
-        if (rules.expanded.some(pattern => new RegExp(pattern).test(bare))) return `${error}: expand the file: passo expand`;
+        const { rules, letters } = this, words = Advice.words(Advice.bare(line));
         if (number === rules.no_port) return `${error}: ${this.ports}`;
         const printer = words.find(({ letter }) => letter === "E");
         if (number === rules.unused && printer) return `${error}: ${printer.text} (${rules.letters.E})`;

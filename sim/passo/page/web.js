@@ -184,7 +184,8 @@ class Form {
         }
     }
 
-    progress({ share, seconds }) {
+    progress({ share, seconds, doing }) {
+        if (doing) return this.say(doing);
         const bar = by("progress"), spent = (performance.now() - this.began) / 1000;
         if (share > 0) bar.value = share;
         else bar.removeAttribute("value");
@@ -193,11 +194,11 @@ class Form {
     }
 
     // The message that plays what is typed, with a profile instead of its own.
-    job(profile) {
+    job(profile, expand) {
         if (this.language === GCODE) {
             const { machine } = this, numbers = [...machine.numbers];
             if (profile) numbers[PROFILE] = PROFILES.indexOf(profile);
-            return { kind: "play", text: this.text, machine: { ...machine, numbers } };
+            return { kind: "play", text: this.text, machine: { ...machine, numbers }, expand };
         }
         const text = profile ? this.text.replace(/profile=\w+/g, `profile=${profile}`) : this.text;
         return { kind: "type", lines: text.split("\n").map(line => line.trim()).filter(Boolean), hz: Number(by("clock").value) };
@@ -212,9 +213,10 @@ class Form {
         this.busy(true);
         try {
             if (this.language === GCODE && this.refused) throw new BadValue(this.refused);
-            const profile = by("beside").value;
-            const other = profile ? await this.runner.ask(this.job(profile)) : null;
-            await this.show(await this.runner.ask(this.job()), other, profile);
+            const profile = by("beside").value, expand = this.language === GCODE && Advice.needsExpanding(this.text, RULES.gcode);
+            if (expand) await this.runner.python();
+            const other = profile ? await this.runner.ask(this.job(profile, expand)) : null;
+            await this.show(await this.runner.ask(this.job("", expand)), other, profile);
         } catch (error) {
             clearMotion();
             by("answer").textContent = "";
