@@ -55,9 +55,7 @@ def layout() -> dict[str, Any]:
         return str(of.cname)
 
     def argument(of: Any) -> Any:
-        if of.kind != "pointer":
-            return None
-        return None if of.item.cname == "char" else described(of.item)
+        return described(of.item) if of.kind == "pointer" else None
 
     functions = {
         name: [argument(of) for of in ffi().typeof(getattr(planner(), name)).args] for name in FUNCTIONS

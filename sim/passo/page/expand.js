@@ -2,6 +2,7 @@
 // Python in the worker, which expands what plain lines do not have (sim/passo/web_python.py).
 "use strict";
 
+const SPINDLE_MAXIMUM = 10;  // its place in `struct web_machine`
 const NOWHERE = "https://passo.invalid/";  // Pyodide asks for its files there
 
 class Python {
@@ -41,9 +42,10 @@ class Python {
         return python;
     }
 
-    // The answer of sim/passo/page/expanding.py for a program on a machine.
-    expand(text, { numbers, letters, inputs, power }) {
-        const settings = { axes: letters.length, arc_tolerance: numbers[3], spindle_maximum: numbers[10], letters, inputs, power };
-        return JSON.parse(this.expanding.expand(text, JSON.stringify(settings)));
+    // The answer of sim/passo/page/expanding.py for a program on a machine, with a table of tools.
+    expand(text, { numbers, letters, inputs, power, turn_counts }, tools) {
+        const [, , , arc_tolerance] = numbers, axes = letters.length;
+        const settings = { axes, arc_tolerance, spindle_maximum: numbers[SPINDLE_MAXIMUM], turn_counts, letters, inputs, power: Boolean(power) };
+        return JSON.parse(this.expanding.expand(text, JSON.stringify(settings), tools));
     }
 }

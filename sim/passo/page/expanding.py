@@ -6,23 +6,26 @@ from pathlib import Path
 
 from passo.expand.expander import Options, expand_file
 from passo.expand.place import ExpandError
+from passo.expand.tools import read_tools
 from passo.failure import BadInputError
 from passo.gcode import GcodeSettings
 
-PROGRAM = Path("program")
+PROGRAM, TOOLS = Path("program"), Path("tool table")
 
 
-def expand(text: str, settings: str) -> str:
-    """A program on a machine at 0, without tools: its plain lines, where each is from, and the texts of PRINT, as JSON.
+def expand(text: str, settings: str, tools: str) -> str:
+    """A program on a machine at 0: its plain lines, where each is from, and the texts of PRINT, as JSON.
 
-    `settings`: those of GcodeSettings, as JSON. Of a program that cannot be expanded: what is wrong.
+    `settings`: those of GcodeSettings, as JSON; `tools`: a table. Of what cannot be expanded: what is wrong.
     """
     said: list[str] = []
-    options = Options(GcodeSettings(**json.loads(settings)), at_zero=True)
+    TOOLS.write_text(tools, encoding="utf-8")
     try:
+        options = Options(GcodeSettings(**json.loads(settings)), read_tools(TOOLS), at_zero=True)
         lines = expand_file(PROGRAM, options, said.append, text.encode("utf-8", "replace"))
     except BadInputError as error:
-        wrong = f"line {error.place.line}: {error.reason}" if isinstance(error, ExpandError) else str(error)
+        is_placed = isinstance(error, ExpandError) and error.place.path == PROGRAM
+        wrong = f"line {error.place.line}: {error.reason}" if is_placed else str(error)
         return json.dumps({"said": said, "wrong": wrong})
     return json.dumps(
         {"said": said, "lines": [line.text for line in lines], "places": [line.place.line for line in lines]}

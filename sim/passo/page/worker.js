@@ -2,10 +2,10 @@
 // The worker of the page: the core, its planner and its console as WebAssembly. It works in slices, between which it
 // hears the page, and answers with motions whose arrays move without being copied.
 //
-// In: {kind: "load", module, rules}, {kind: "python", packed}, {kind: "play", text, machine, expand}, {kind: "type", lines, hz},
-//     {kind: "csv"}, {kind: "report"}, {kind: "cancel"}
+// In: {kind: "load", module, rules}, {kind: "python", packed}, {kind: "play", text, machine, tools}, {kind: "type", lines, hz},
+//     {kind: "expand", text, machine, tools}, {kind: "csv"}, {kind: "report"}, {kind: "cancel"}
 // Out: {kind: "ready"}, {kind: "progress", share, seconds}, {kind: "progress", doing}, {kind: "result", text, wrong, motion},
-//      {kind: "csv", blob}, {kind: "report", facts, edges}, {kind: "failure", text}
+//      {kind: "expanded", said, wrong} or {.., lines, places}, {kind: "csv", blob}, {kind: "report", facts, edges}, {kind: "failure", text}
 "use strict";
 
 const AXES = 4, LISTS = 3;  // of the console's core; lists of edges per axis
@@ -77,10 +77,10 @@ class Core {
     }
 
     // Plays G-code on a machine after reset (struct web_machine). Returns what it said, what is wrong with it, and a
-    // motion or null. `expand`: it has what plain lines do not have.
-    async play(text, machine, expand) {
-        if (!expand) return this.playPlain(text, machine);
-        const { said, wrong, lines, places } = this.python.expand(text, machine);
+    // motion or null. `tools`: their table, with which the program is expanded; null: it is plain.
+    async play(text, machine, tools) {
+        if (tools === null) return this.playPlain(text, machine);
+        const { said, wrong, lines, places } = this.python.expand(text, machine, tools);
         const played = wrong ? { wrong: [wrong], motion: null } : await this.playPlain(lines.join("\n"), machine, n => places[n - 1]);
         return { ...played, text: said.length ? [...said, ...played.wrong].join("\n") : "" };
     }
@@ -217,11 +217,12 @@ const answers = {
         core.python = await Python.load(packed, core.c);
         return { kind: "ready" };
     },
-    async play({ text, machine, expand }) {
-        if (expand) postMessage({ kind: "progress", doing: "expanding the program" });
-        return { kind: "result", ...await core.play(text, machine, expand) };
+    async play({ text, machine, tools }) {
+        if (tools !== null) postMessage({ kind: "progress", doing: "expanding the program" });
+        return { kind: "result", ...await core.play(text, machine, tools) };
     },
     type: async ({ lines, hz }) => ({ kind: "result", ...await core.type(lines, hz) }),
+    expand: async ({ text, machine, tools }) => ({ kind: "expanded", ...core.python.expand(text, machine, tools) }),
     report: async () => ({ kind: "report", ...await reportOf(core) }),
     csv: async () => ({ kind: "csv", blob: csvOf(core) }),
 };
