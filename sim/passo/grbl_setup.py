@@ -150,11 +150,10 @@ def setup_of(machine: MachineFile, parameters: Parameters, defaults: Any, pages:
     return made
 
 
-def core_for(machine: MachineFile, spindle: bool = False) -> Parameters:
-    """The core that a machine needs; with the encoder of its spindle, at the inputs behind the motors."""
-    core = parameters_for(len(machine.motors) + spindle)
-    parts = dict.fromkeys((*machine.parts, *("encoders", "outputs") * spindle), 1)
-    return replace(core, clock_hz=machine.clock_hz, **parts)
+def core_for(machine: MachineFile) -> Parameters:
+    """The core that a machine needs."""
+    core = parameters_for(machine.core_axes)
+    return replace(core, clock_hz=machine.clock_hz, **dict.fromkeys(machine.parts, 1))
 
 
 def attach(engine: Any, machine: MachineFile, skews: dict[int, int] | None = None) -> Any:

@@ -63,5 +63,5 @@ def turning_machine_at(name: str, machine: MachineFile) -> Iterator[tuple[Any, S
         with machine_at(name, machine) as engine:
             yield engine, None
         return
-    with open_engine(name, core_for(machine, spindle=True), machine.clock_hz) as engine:
+    with open_engine(name, core_for(machine), machine.clock_hz) as engine:
         yield engine, SpindleAt(engine, machine, config=rig_config(engine, machine))

@@ -67,7 +67,9 @@ def layout() -> dict[str, Any]:
 
 def package() -> bytes:
     """The package passo as the page has it, as a zip file."""
-    sources = [paths.sim / "passo" / name for name in MODULES] + sorted((paths.sim / "passo" / "expand").glob("*.py"))
+    sources = [paths.sim / "passo" / name for name in MODULES] + sorted(
+        (paths.sim / "passo" / "expand").glob("*.py")
+    )
     made = io.BytesIO()
     with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as archive:
 

@@ -172,7 +172,8 @@ class Machine:
         end, command = self.gcode.position, self.mode(MOTION)
         tip = (0, 0, c.tool_length)
         ends = (
-            [(at - of_tip) / NANOMETERS for at, of_tip in zip(place, tip, strict=False)] for place in (begin, end)
+            [(at - of_tip) / NANOMETERS for at, of_tip in zip(place, tip, strict=False)]
+            for place in (begin, end)
         )
         share = share_of_probe(surface, command, *ends)
         done = 1.0 if share is None else share

@@ -54,7 +54,7 @@ class MachineReader {
         const spindle = own(data, "spindle_maximum", 0, (table, key) => readInteger(table, key, 1, RULES.whole_max));
         this.parts = RULES.parts.filter(part => ({
             inputs: this.switches.probe || this.ends.some(end => end.switches.length),
-            encoders: this.ends.some(end => end.encoders.length),
+            encoders: data.has("spindle") || this.ends.some(end => end.encoders.length),
             outputs: spindle > 0,
         })[part]);
         this.hz = this.board(wanted);
@@ -226,7 +226,7 @@ class MachineReader {
         const { data, ends, parts } = this;
         if (!data.has("board")) return wanted;
         const name = readWord(data, "board", Object.keys(RULES.boards)), board = RULES.boards[name];
-        const refused = board.refused[`${this.rows.length} ${parts.join()}`];
+        const refused = board.refused[`${this.rows.length + Number(data.has("spindle"))} ${parts.join()}`];
         if (refused) wrong(refused);
         let hz = board.hz[Number(parts.length > 0)];
         if (wanted !== null) {
@@ -305,7 +305,6 @@ class MachineReader {
         const table = readSubtable(data, "spindle"), [low, high] = RULES.counts, most = RULES.wander_max;
         checkKnown(table, RULES.keys.spindle);
         if (!maximum) wrong("it needs spindle_maximum");
-        if (data.has("board")) wrong("no board has pins for its encoder: write clock_hz instead of board");
         const counts = readInteger(table, "counts", low, high);
         const startUp = own(table, "start_up", RULES.defaults.start_up), wander = own(table, "wander", 0);
         if (!startUp || wander > most) wrong(`start_up must be greater than 0, wander at most ${most} %`);

@@ -83,7 +83,7 @@ class _Structure(ctypes.Structure):
 
 
 class Library:
-    """The types of cffi's FFI, the functions and constants of its library; `layout` is web_python.layout()."""
+    """The types, functions and constants of `layout` (web_python.layout()), as cffi has them."""
 
     def __init__(self, layout: dict[str, Any], memory: Any):
         self._constants, self._functions = layout["constants"], layout["functions"]
