@@ -375,7 +375,7 @@ def set_machine(browser: Browser | Firefox, text: str) -> str:
             f"(area => {{ area.value = {json.dumps(text)}; area.dispatchEvent(new Event('{kind}')); }})"
             "(document.getElementById('machine-text'))"
         )
-    browser.wait(f"web.done > {done}", seconds)
+    browser.wait(f"web.done > {done}")
     return browser.value(VERDICT)
 
 

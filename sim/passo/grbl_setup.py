@@ -162,7 +162,7 @@ def attach(engine: Any, machine: MachineFile, skews: dict[int, int] | None = Non
 
 
 def rig_config(engine: Any, machine: MachineFile, skews: dict[int, int] | None = None) -> Any:
-    """The `struct passo_rig_config` of a machine: each axis in the middle of its travel, switches at its ends.
+    """The `struct passo_rig_config` of a machine: each axis in the middle of its travel, switches at its end.
 
     `skews`: steps by which motors begin elsewhere.
     For the probe there is a plate that Z (or the last axis) touches a quarter of its travel below the middle.

@@ -34,8 +34,8 @@ ESTOP = (
     "A second contact must cut the power of drives and spindle without any electronics."
 )
 ENCODERS = (
-    "Encoders: the pins take 3.3 V. Pairs of RS-422 go through a receiver at 3.3 V (AM26LV32), outputs of 5 V "
-    "through a 74LVC245 at 3.3 V, open collectors get 1 kohm to 3.3 V. The shield is grounded at one end."
+    "Encoders: the pins take 3.3 V. Pairs of RS-422 go through a receiver at 3.3 V (AM26LV32), outputs of "
+    "5 V through a 74LVC245 at 3.3 V, open collectors get 1 kohm to 3.3 V. Ground the shield at one end."
 )
 GROUNDS = (
     "Grounds: FPGA board, Blue Pill, buffers and logic inputs have one, joined at one point; another wire "
