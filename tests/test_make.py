@@ -223,7 +223,7 @@ WRONG = [
 
 
 def test_the_encoder_of_a_spindle(tmp_path: Path) -> None:
-    """It has the pins of the axis behind the motors, whose other pins lead nowhere; firmware and core know it."""
+    """It has the pins of the axis behind the motors, whose others lead nowhere; firmware and core know it."""
     path = tmp_path / "mill.toml"
     path.write_text('chip = "STM32F103CB"\n' + TEXT.replace("[[axis]]", SPINDLE, 1))
     results = made(path, tmp_path / "out")

@@ -90,7 +90,8 @@ def of_the_page(
 
 def of_the_command(folder: Path, program: str, options: Options) -> dict[str, Any]:
     """The same from the command."""
-    path, said = folder / "program", []
+    said: list[str] = []
+    path = folder / "program"
     path.write_bytes(program.encode())
     try:
         lines = expand_file(path, options, said.append)

@@ -51,7 +51,7 @@ class Lathe:
         self._tap: _Tap | None = None
 
     def becomes_others(self, words: Sequence[Word]) -> bool:
-        """Whether a line is a thread or a tap, by its command or the one in force, which other motions end."""
+        """Whether a line is a thread or a tap, by its command or that in force, which other motions end."""
         codes = {word.code for word in words if word.letter == "G"}
         if codes & MOTIONS:
             self._tap = None

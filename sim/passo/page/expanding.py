@@ -23,10 +23,11 @@ def expand(text: str, settings: str, tools: str) -> str:
     try:
         options = Options(GcodeSettings(**json.loads(settings)), read_tools(TOOLS), at_zero=True)
         lines = expand_file(PROGRAM, options, said.append, text.encode("utf-8", "replace"))
+    except ExpandError as error:
+        place = f"line {error.place.line}" if error.place.path == PROGRAM else error.place
+        return json.dumps({"said": said, "wrong": f"{place}: {error.reason}"})
     except BadInputError as error:
-        is_placed = isinstance(error, ExpandError) and error.place.path == PROGRAM
-        wrong = f"line {error.place.line}: {error.reason}" if is_placed else str(error)
-        return json.dumps({"said": said, "wrong": wrong})
+        return json.dumps({"said": said, "wrong": str(error)})
     return json.dumps(
         {"said": said, "lines": [line.text for line in lines], "places": [line.place.line for line in lines]}
     )
