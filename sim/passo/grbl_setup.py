@@ -152,14 +152,19 @@ def setup_of(machine: MachineFile, parameters: Parameters, defaults: Any, pages:
 
 def core_for(machine: MachineFile) -> Parameters:
     """The core that a machine needs."""
-    core = parameters_for(len(machine.motors))
+    core = parameters_for(machine.core_axes)
     return replace(core, clock_hz=machine.clock_hz, **dict.fromkeys(machine.parts, 1))
 
 
 def attach(engine: Any, machine: MachineFile, skews: dict[int, int] | None = None) -> Any:
-    """A simulated machine at the core: each axis in the middle of its travel, switches at its ends.
+    """A simulated machine at the core; returns the rigs, with their libraries."""
+    return engine.attach(rig_config(engine, machine, skews))
 
-    `skews`: steps by which motors begin elsewhere. Returns the rigs, with their libraries.
+
+def rig_config(engine: Any, machine: MachineFile, skews: dict[int, int] | None = None) -> Any:
+    """The `struct passo_rig_config` of a machine: each axis in the middle of its travel, switches at its end.
+
+    `skews`: steps by which motors begin elsewhere.
     For the probe there is a plate that Z (or the last axis) touches a quarter of its travel below the middle.
     """
     config = ffi().new("struct passo_rig_config *")
@@ -191,7 +196,7 @@ def attach(engine: Any, machine: MachineFile, skews: dict[int, int] | None = Non
             wire.share, wire.at = rows[wire.other][axis], 2 * at
         wire.is_switch, wire.inverted = True, machine.switches.inverted and pin != NUMBERS["probe"]
     config.wires = len(wires)
-    return engine.attach(config)
+    return config
 
 
 def add_encoders(config: Any, machine: MachineFile) -> None:

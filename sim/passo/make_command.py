@@ -48,6 +48,7 @@ OUTPUTS = ("spindle on", "spindle reverse", "flood coolant", "mist coolant")  # 
 SWITCH_PORTS = {"limit_low": "limit, low end", "limit_high": "limit, high end", "home": "home switch"}
 AXIS_PORTS = {"step": "STEP (PUL)", "dir": "DIR", "enable": "EN (ENA)"}
 ENCODER_PORTS = {"encoder_a": "A", "encoder_b": "B", "encoder_index": "index, or ground"}
+SPINDLE_PORTS = {**ENCODER_PORTS, "encoder_index": "index"}
 INPUT_NAMES = {pin.name for pin in INPUTS}
 OTHER_PORTS = {
     "power": "spindle PWM or laser",
@@ -112,6 +113,10 @@ def _check_firmware(machine: MachineFile) -> None:
         )
     if machine.encoders and chip != LARGE:
         raise BadInputError(f'{machine.path}: the firmware for {chip} has no encoders, chip = "{LARGE}" has')
+    if machine.spindle and chip != LARGE:
+        raise BadInputError(
+            f'{machine.path}: spindle: the firmware for {chip} has no threads, chip = "{LARGE}" has'
+        )
     if machine.gcode.left_out and chip != LARGE:
         raise BadInputError(
             f"{machine.path}: the axes are {' '.join(machine.letters)}; "
@@ -182,7 +187,7 @@ def settings_lines(machine: MachineFile) -> list[str]:
 
 def _wires(machine: MachineFile, chosen: Board) -> Iterator[Wire]:
     where, host = places(chosen.name), host_pins()
-    for port, pin in chosen.ports(len(machine.motors), machine.parts).items():
+    for port, pin in chosen.ports(machine.core_axes, machine.parts).items():
         if port != OSCILLATOR:
             name, index = re.fullmatch(r"(\w+?)(?:\[(\d+)\])?", port).groups()
             there = where.get(port if index else f"{name}[0]", where.get(port, ""))
@@ -199,6 +204,8 @@ def _end(machine: MachineFile, chosen: Board, host: dict[str, str], name: str, i
     """What a wire leads to; nothing if it is not used."""
     if name in host:
         return f"Blue Pill {host[name]}"
+    if index == len(machine.motors) and name in (*AXIS_PORTS, *SWITCH_PORTS, *ENCODER_PORTS):
+        return f"encoder of the spindle: {SPINDLE_PORTS[name]}" if name in ENCODER_PORTS else ""
     if name in AXIS_PORTS:
         return f"drive {machine.motors[index]}: {AXIS_PORTS[name]}"
     if name in SWITCH_PORTS:
@@ -229,7 +236,8 @@ def _summary(machine: MachineFile, chosen: Board) -> Iterator[str]:
     with_parts = ", ".join(machine.parts) or "no parts"
     spi = next(mhz for mhz in SPI_MHZ if 4e6 * mhz <= machine.clock_hz)
     clock = f"{machine.clock_hz / 1e6:g} MHz; SPI {spi} MHz"
-    yield f"  core   {len(machine.motors)} of {chosen.axes} axes, {with_parts}, {clock}"
+    more = ", one for the encoder of the spindle" if machine.spindle else ""
+    yield f"  core   {machine.core_axes} of {chosen.axes} axes{more}, {with_parts}, {clock}"
     longest = {"STEP": max(pins.step_high, pins.step_low), "DIR": max(pins.dir_setup, pins.dir_hold)}
     times = (f"{name} {clocks / machine.clock_hz * 1e6:.3g} us" for name, clocks in longest.items())
     yield f"  pins   {', '.join(times)}; EN active {'low' if machine.enable_inverted else 'high'}"
@@ -247,7 +255,7 @@ def _summary(machine: MachineFile, chosen: Board) -> Iterator[str]:
 
 def core_of(machine: MachineFile) -> tuple[int, float, tuple[str, ...]]:
     """Axes, MHz and parts of its core, as the board makes it."""
-    return len(machine.motors), machine.clock_hz / 1e6, machine.parts
+    return machine.core_axes, machine.clock_hz / 1e6, machine.parts
 
 
 def at_home(machine: MachineFile, chosen: Board) -> dict[str, int]:
@@ -269,6 +277,7 @@ def definitions(machine: MachineFile) -> dict[str, Any]:
         "OUTPUTS": int("outputs" in machine.parts),
         **_motors(machine.settings.motors),
         **(_squares(machine) if machine.squared else {}),
+        **({"TURN_COUNTS": machine.gcode.turn_counts} if machine.spindle else {}),
         **({"ENCODERS": ",".join(map(str, encoders_of(machine)))} if machine.encoders else {}),
     }
 
