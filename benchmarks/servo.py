@@ -25,7 +25,8 @@ from tests.helpers.driver_wire import Noise
 
 CLOCK_HZ, SCLK_HZ = 16_000_000, 4_000_000  # two clocks per level
 AXES, SCALE, PERIOD = 3, 800, 0.001
-SPEED, ACCELERATION = 100.0, 2000.0  # mm/s, mm/s^2 of an axis; half of the latter for the commands
+SPEED, ACCELERATION, STOP = 100.0, 1000.0, 1000.0  # mm/s, mm/s^2 of an axis: commands, and beyond them
+HARDEST = ACCELERATION + STOP
 PINS = {"step_high_ns": 1000, "step_low_ns": 1000, "dir_setup_ns": 500, "dir_hold_ns": 500}
 UNIT = float(1 << 32)
 MICROSECOND = 1e-6
@@ -48,6 +49,7 @@ class Setting:
     period: float = PERIOD
     speed: float = SPEED
     acceleration: float = ACCELERATION
+    stop: float = STOP
     buffer: int = 0
     clock_hz: int = CLOCK_HZ
     inputs: bool = True
@@ -59,11 +61,11 @@ class Setting:
 
     def options(self) -> Any:
         """`struct passo_servo_options`."""
-        limit = (round(self.speed * self.scale * UNIT), round(self.acceleration * self.scale * UNIT))
+        limits = [round(value * self.scale * UNIT) for value in (self.speed, self.acceleration, self.stop)]
         found = ffi().new("struct passo_servo_options *")
         found.period_ns, found.buffer, found.axes = round(self.period * 1e9), self.buffer, self.axes
         for axis in range(self.axes):
-            found.axis[axis].speed, found.axis[axis].acceleration = limit
+            found.axis[axis] = limits
         return found
 
 
@@ -207,7 +209,7 @@ class Run:
         return float(max(0, change.max() - 4)) / scale / window**2
 
 
-def waves(axes: int, seconds: float, speed: float = SPEED, acceleration: float = ACCELERATION / 2) -> Command:
+def waves(axes: int, seconds: float, speed: float = SPEED, acceleration: float = ACCELERATION) -> Command:
     """Sines from rest to rest, of a different pace per axis; each comes near one of the two limits."""
     grid = np.linspace(0, seconds, round(seconds * 2000) + 1)
     window = np.clip(np.minimum(grid, seconds - grid) / (0.2 * seconds), 0, 1)
@@ -330,7 +332,7 @@ def measure(seed: int, seconds: float = 10, count: int = 50, deaths: int = 20, h
         ends.append((end.cause, end.hardest, lost(end)))
     wire = run(Setting(axes=6, scale=80, inputs=False), 2, waves(6, 2))
     slow = Setting(
-        axes=2, scale=50, period=0.02, clock_hz=1_000_000, inputs=False, speed=50, acceleration=400
+        axes=2, scale=50, period=0.02, clock_hz=1_000_000, inputs=False, speed=50, acceleration=200, stop=200
     )
     long = run(slow, hour, lambda time: [20 * np.sin(time), 7 * np.sin(2.3 * time)], PPM)
     passed = [found.passes()[found.moved] for found in steady]
@@ -378,8 +380,8 @@ def following(found: Run) -> float:
 def good(found: Figures) -> bool:
     """All promises are kept."""
     exact = found.lost == found.hour_lost == 0 and not found.gaps_off and found.hour_late <= 1
-    soft = found.hardest <= ACCELERATION / 2 * ROUNDING
-    soft = soft and max(found.gaps_hardest, found.deaths_hardest) <= ACCELERATION * ROUNDING
+    soft = found.hardest <= ACCELERATION * ROUNDING
+    soft = soft and max(found.gaps_hardest, found.deaths_hardest) <= HARDEST * ROUNDING
     in_step = found.late <= found.lag + LATE and found.trim_step < ROUNDING_PPM
     return (
         exact and soft and in_step and found.share <= SHARE_MAX and set(found.causes) == {Cause.WATCHDOG.name}
