@@ -18,10 +18,10 @@
 #define NANOSECONDS UINT64_C(1000000000)
 #define MICROSECOND 1000u /* ns */
 #define POLLS 4u
-#define HOLD_RAMP 1u       /* the last one of a push: holds, then goes down */
-#define RISE_RAMP 2u       /* before it, unless there is full speed; at the start a jump to it */
+#define HOLD_RAMP 1u          /* the last one of a push: holds, then goes down */
+#define RISE_RAMP 2u          /* before it, unless there is full speed; at the start a jump to it */
 #define BANK PASSO_SHAPE_EASE /* its table is replaced */
-#define NEARLY_Q16 64u /* below full speed: less than the rounding of a line */
+#define NEARLY_Q16 64u        /* below full speed: less than the rounding of a line */
 #define HALVINGS 8u
 #define FREE 8u     /* lines that a queue must have beyond the lag */
 #define STARTING 2u /* calls until the core begins */
@@ -234,7 +234,9 @@ static bool give_ramp(void *context, struct passo_ramp *ramp)
 static uint64_t lines_of(const struct passo_servo *servo, uint64_t from, uint64_t to)
 {
 	/* the shape keeps its proportions, so that it goes down in the whole stop time from any speed */
-	return ((from + to) * (to - from) * servo->stop + to * (2u * (uint64_t)servo->cover + ((uint64_t)servo->stop << 16))) >> 17;
+	return ((from + to) * (to - from) * servo->stop
+	           + to * (2u * (uint64_t)servo->cover + ((uint64_t)servo->stop << 16)))
+	    >> 17;
 }
 
 /* The highest speed that the lines in the core allow, at least `from`; 0: they do not allow even that. */
@@ -407,7 +409,8 @@ static enum passo_servo_problem check(struct passo_servo *servo)
 	if (held == PASSO_TABLE_SIZE)
 		return PASSO_SERVO_LAG;
 	servo->cover = (uint32_t)(((uint64_t)servo->stop * held << 16) / (PASSO_TABLE_SIZE - held));
-	servo->lag = (uint32_t)((lines_of(servo, ONE_Q16, ONE_Q16) + ONE_Q16 - 1u) >> 16) + PASSO_SERVO_MARGIN;
+	servo->lag =
+	    (uint32_t)((lines_of(servo, ONE_Q16, ONE_Q16) + ONE_Q16 - 1u) >> 16) + PASSO_SERVO_MARGIN;
 	return servo->lag + FREE > servo->places ? PASSO_SERVO_LAG : PASSO_SERVO_OK;
 }
 

@@ -38,7 +38,8 @@ extern "C" {
 struct passo_servo_axis {
 	uint64_t speed;        /* UQ32.32 steps/s; up to 1 % above it while a lag is made up */
 	uint64_t acceleration; /* UQ32.32 steps/s^2, of the commands */
-	uint64_t stop; /* UQ32.32 steps/s^2 beyond it that the axis bears while a late program slows the path */
+	uint64_t
+	    stop; /* UQ32.32 steps/s^2 beyond it that the axis bears while a late program slows the path */
 };
 
 struct passo_servo_options {

@@ -4,31 +4,23 @@
 import numpy as np
 
 from passo.engine import Engine
-from passo.grbl_setup import add_encoders
+from passo.grbl_setup import add_encoders, spindle_wheel
 from passo.machine_file import MachineFile
 from passo.native import ffi
 from passo.pair_engine import PairEngine
-from passo.rig import CHANGE, CHANGES_PER_DRAIN, RATIO_ONE, interval_of
+from passo.rig import CHANGE, CHANGES_PER_DRAIN
 
 
 class SpindleAt:
     """A spindle that outputs 0 and 1 turn on and reverse, with the encoders of the motors."""
 
     def __init__(self, engine: Engine | PairEngine, machine: MachineFile, seed: int = 1):
-        spindle, motors = machine.spindle, len(machine.motors)
-        assert spindle
         config = ffi().new("struct passo_rig_config *")
         config.seed, config.axes = seed, engine.parameters.axes
         add_encoders(config, machine)
         self._wheel = config.wheels
         config.wheels += 1
-        config.wheel[self._wheel] = {
-            "axis": motors,
-            "interval": interval_of(machine.clock_hz, machine.gcode.spindle_maximum, spindle.counts),
-            "wander": round(spindle.wander * RATIO_ONE / 100),
-            "per_turn": spindle.counts,
-            "start_up": round(spindle.start_up * machine.clock_hz),
-        }
+        config.wheel[self._wheel] = spindle_wheel(machine)
         self._rigs = engine.attach(config)
         self._changes = ffi().new("struct passo_rig_change[]", CHANGES_PER_DRAIN)
         self._found = [np.empty(0, CHANGE)]

@@ -6,6 +6,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import tempfile
 from collections.abc import Iterator
@@ -15,8 +16,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from passo.grbl_setup import machine_at
-from passo.machine_file import read_machine
+from passo.grbl_setup import machine_at, served
+from passo.linuxcnc_files import linuxcnc_files
+from passo.machine_file import MachineFile, read_machine
 from passo.toolchain import paths
 
 from tests.helpers.serving import serving
@@ -75,18 +77,20 @@ def alone() -> Iterator[Path]:
         try:
             yield folder
         finally:
-            shutil.rmtree(folder)
+            shutil.rmtree(folder, ignore_errors=True)
 
 
-def prepare(folder: Path, program: str, device: str, changes: dict[str, str]) -> None:
-    """The example, without its screen, and with changes of its two files."""
-    for source in EXAMPLE.iterdir():
-        text = source.read_text()
+def prepare(
+    folder: Path, machine: MachineFile, program: str, device: str, changes: dict[str, str]
+) -> None:
+    """The configuration that `passo make` makes, without its screen, and with changes of its files."""
+    for name, lines in linuxcnc_files(machine).items():
+        text = "\n".join([*lines, ""])
         for old, new in changes.items():
             text = text.replace(old, new)
         text = re.sub(r"^DISPLAY = .*", "DISPLAY = ./ui.py", text, flags=re.M)
         text = re.sub(r"^DEVICE = .*", f"DEVICE = {device}", text, flags=re.M)
-        (folder / source.name).write_text(text)
+        (folder / name).write_text(text)
     shutil.copy(paths.tests / "linuxcnc" / "ui.py", folder)
     (folder / "program.ngc").write_text(program)
     folder.chmod(0o777)
@@ -95,21 +99,29 @@ def prepare(folder: Path, program: str, device: str, changes: dict[str, str]) ->
 def _call(folder: Path, *command: str) -> subprocess.CompletedProcess[str]:
     # it refuses to run as root
     user = ["setpriv", f"--reuid={NOBODY}", f"--regid={NOBODY}", "--clear-groups"]
-    return subprocess.run(
+    called = subprocess.Popen(
         [*(user if os.geteuid() == 0 else []), *command],
         cwd=folder,
         env=os.environ | {"HOME": str(folder)},
         stdin=subprocess.DEVNULL,
-        capture_output=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
         text=True,
-        timeout=SECONDS_MAX,
+        start_new_session=True,  # all that it starts ends with it
     )
+    try:
+        out, err = called.communicate(timeout=SECONDS_MAX)
+    except subprocess.TimeoutExpired:
+        os.killpg(called.pid, signal.SIGKILL)
+        called.communicate()
+        raise
+    return subprocess.CompletedProcess(command, called.returncode, out, err)
 
 
 def run_hal(script: str, device: str = "") -> tuple[str, Any]:
     """What is said to a script of halcmd, and the events of the pins; CORE in it is the device."""
-    installed()
     with alone() as folder:
+        installed()
         place = folder / "core"
         (folder / "script.hal").write_text(script.replace("CORE", device or f"unix:{place}"))
         folder.chmod(0o777)
@@ -121,14 +133,24 @@ def run_hal(script: str, device: str = "") -> tuple[str, Any]:
         return done.stdout + done.stderr, events
 
 
-def run_linuxcnc(program: str, engine: str = "model", changes: dict[str, str] | None = None) -> Result:
-    """Home and run a program; `changes`: of the text of the example."""
-    installed()
+def run_linuxcnc(
+    program: str,
+    engine: str = "model",
+    changes: dict[str, str] | None = None,
+    text: str = "",
+    per_turn: int = 0,
+) -> Result:
+    """Home and run a program; `changes`: of the text of its files; `text`: of another machine file.
+
+    `per_turn`: counts from index to index of the encoders of motors.
+    """
     with alone() as folder:
+        installed()
         place = folder / "core"
-        prepare(folder, program, f"unix:{place}", changes or {})
-        machine = read_machine(EXAMPLE / "machine.toml")
-        with machine_at(engine, machine) as core:
+        (folder / "machine.toml").write_text(text or (EXAMPLE / "machine.toml").read_text())
+        machine = read_machine(folder / "machine.toml")
+        prepare(folder, machine, program, f"unix:{place}", changes or {})
+        with served(engine, machine, per_turn) as core:
             with serving(core, place, keep=True) as server:
                 place.chmod(0o777)
                 done = _call(folder, "linuxcnc", "machine.ini")
