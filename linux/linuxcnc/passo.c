@@ -56,7 +56,7 @@ RTAPI_MP_INT(watchdog_ms, "after which a core with inputs stops without a host; 
 #define WORD_BITS 32u
 #define EXIT_WAITS 2000u
 #define SHARE 5u /* of a period that the wire may be busy: a fifth */
-#define LATCH_BITS 16u
+#define PAST 16u /* reads of the encoders from which their speed is computed */
 #define COMMA ','
 
 struct stepgen {
@@ -77,8 +77,8 @@ struct encoder {
 	hal_bit_t *index_enable, *reset;
 	hal_float_t scale;
 	hal_bit_t index_invert, index_mask;
-	int32_t zero, before;
-	bool waits; /* for an index after the number `indexes` */
+	int32_t zero, before[PAST]; /* raw counts of the reads before */
+	bool waits;                 /* for an index after the number `indexes` */
 	uint8_t indexes;
 };
 
@@ -109,9 +109,9 @@ static long period_ns;
 static unsigned inputs; /* of the core; 0: none */
 static uint8_t first_encoder, last_encoder;
 static bool has_encoders;
-static bool in_turns;     /* positions and inputs are read in turns: the wire is slow */
-static bool reads_inputs; /* it is their turn */
-static uint32_t read_at;  /* microseconds, of the encoders */
+static bool in_turns;                 /* positions and inputs are read in turns: the wire is slow */
+static bool reads_inputs;             /* it is their turn */
+static uint32_t read_at[PAST], reads; /* microseconds, of the encoders; their number */
 static bool outputs;
 /* A call may take longer than HAL waits before it unloads the component. */
 static atomic_bool leaving;
@@ -460,11 +460,16 @@ static void read_stepgens(long period)
 	}
 }
 
-/* A period after the counts were read. */
+/* A period after the counts were read, in whole steps like them. */
 static void extrapolate(long period)
 {
-	for (int axis = 0; axis < axes; axis++)
-		*pins->stepgen[axis].feedback += *pins->stepgen[axis].velocity * (double)period * NS;
+	for (int axis = 0; axis < axes; axis++) {
+		const struct stepgen *own = &pins->stepgen[axis];
+		const double scale = own->scale > 0 ? own->scale : 1;
+
+		*own->feedback =
+		    (rint(own->before + *own->velocity * scale * (double)period * NS) - own->origin) / scale;
+	}
 }
 
 /* Where an axis was at the index: its counts and those of the encoder belong to the same clock. */
@@ -479,7 +484,8 @@ static bool set_origin(uint8_t axis, uint16_t latch)
 	    != PASSO_OK)
 		return false;
 	const double since = (int16_t)((uint16_t)words[at] - latch);
-	own->origin = (int32_t)(words[axis] + passo.axis[axis].offset) - since / encoder->scale * own->scale;
+	own->origin =
+	    rint((int32_t)(words[axis] + passo.axis[axis].offset) - since / encoder->scale * own->scale);
 	return true;
 }
 
@@ -524,8 +530,10 @@ static void read_encoders(void)
 
 	if (passo_host_read(&host, (uint16_t)address, words, last_encoder - first_encoder + 1u) != PASSO_OK)
 		return;
-	const uint32_t at = host.hardware.microseconds(&linux_host), time = at - read_at;
-	read_at = at;
+	const uint32_t at = host.hardware.microseconds(&linux_host), now = reads++ % PAST;
+	const uint32_t time = reads > PAST ? at - read_at[now] : 0u;
+
+	read_at[now] = at;
 	for (uint8_t axis = first_encoder; axis <= last_encoder; axis++) {
 		struct encoder *own = &pins->encoder[axis];
 		if (!own->used)
@@ -541,8 +549,8 @@ static void read_encoders(void)
 		*own->position = *own->count / scale;
 		if (time > 0)
 			*own->velocity =
-			    (int32_t)((uint32_t)*own->raw - (uint32_t)own->before) / (scale * time * US);
-		own->before = *own->raw;
+			    (int32_t)((uint32_t)*own->raw - (uint32_t)own->before[now]) / (scale * time * US);
+		own->before[now] = *own->raw;
 	}
 }
 
@@ -550,6 +558,8 @@ static void read_pins(long period)
 {
 	const struct passo_snapshot *snapshot = passo_snapshot(&passo);
 
+	if (has_encoders)
+		read_encoders(); /* first: an index changes the origin of the positions */
 	reads_inputs = !reads_inputs;
 	if (!in_turns || !reads_inputs)
 		read_stepgens(period);
@@ -557,8 +567,6 @@ static void read_pins(long period)
 		extrapolate(period);
 	if (inputs > 0 && (!in_turns || reads_inputs))
 		read_inputs();
-	if (has_encoders)
-		read_encoders();
 	*pins->state = (hal_s32_t)snapshot->state;
 	*pins->cause = (hal_s32_t)snapshot->cause;
 	*pins->frames = host.counters.frames;

@@ -3,7 +3,7 @@
 
 import math
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
@@ -238,15 +238,20 @@ def attach_encoders(engine: Any, machine: MachineFile) -> None:
 
 
 @contextmanager
-def served(name: str, machine: MachineFile, per_turn: int = 0) -> Iterator[Any]:
-    """An engine with the machine at its pins, with the encoder of its spindle; `per_turn`: see attach()."""
+def served(
+    name: str, machine: MachineFile, per_turn: int = 0, tell: Callable[[Any], None] = lambda rigs: None
+) -> Iterator[Any]:
+    """An engine with the machine at its pins, with the encoder of its spindle; `per_turn`: see attach().
+
+    `tell` is given its rigs.
+    """
     core = core_for(machine)
     if machine.spindle:
         more = parameters_for(len(machine.motors) + 1)
         core = replace(core, axes=more.axes, encoders=1, outputs=1)
     with open_engine(name, core, machine.clock_hz) as engine:
         if machine.has_inputs or core.encoders:
-            attach(engine, machine, per_turn=per_turn, spindle=machine.spindle is not None)
+            tell(attach(engine, machine, per_turn=per_turn, spindle=machine.spindle is not None))
         yield engine
 
 

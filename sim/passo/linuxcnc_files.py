@@ -23,7 +23,7 @@ LEVELS = {
     "mist": ("iocontrol.0.coolant-mist", 3),
 }
 ROTARY = "ABC"
-AT_SPEED = 1.25  # a count more or less in a period is part of it
+AT_SPEED = 1.05  # of the wanted speed, either way
 
 
 def linuxcnc_files(machine: MachineFile) -> dict[str, list[str]]:

@@ -15,10 +15,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
-from passo.grbl_setup import machine_at, served
+from passo.engine import NUMBERS
+from passo.grbl_setup import served
 from passo.linuxcnc_files import linuxcnc_files
 from passo.machine_file import MachineFile, read_machine
+from passo.native import ffi
+from passo.rig import CHANGE, CHANGES_PER_DRAIN
 from passo.toolchain import paths
 
 from tests.helpers.serving import serving
@@ -42,6 +46,7 @@ class Result:
     ferror: list[float]
     pins: dict[str, str]
     events: Any
+    turns: Any  # clocks of the index of the spindle
     log: str
 
 
@@ -118,19 +123,32 @@ def _call(folder: Path, *command: str) -> subprocess.CompletedProcess[str]:
     return subprocess.CompletedProcess(command, called.returncode, out, err)
 
 
-def run_hal(script: str, device: str = "") -> tuple[str, Any]:
-    """What is said to a script of halcmd, and the events of the pins; CORE in it is the device."""
+def run_hal(script: str, device: str = "", text: str = "") -> tuple[str, Any]:
+    """What is said to a script of halcmd, and the events of the pins; CORE in it is the device.
+
+    `text`: of another machine file than that of the example.
+    """
     with alone() as folder:
         installed()
         place = folder / "core"
         (folder / "script.hal").write_text(script.replace("CORE", device or f"unix:{place}"))
         folder.chmod(0o777)
-        with machine_at("model", read_machine(EXAMPLE / "machine.toml")) as core:
+        (folder / "machine.toml").write_text(text or (EXAMPLE / "machine.toml").read_text())
+        with served("model", read_machine(folder / "machine.toml")) as core:
             with serving(core, place, keep=True) as server:
                 place.chmod(0o777)
                 done = _call(folder, "halrun", "-f", "script.hal")
             events = server.events
         return done.stdout + done.stderr, events
+
+
+def indexes(library: Any, rig: Any) -> Any:
+    """Clocks at which the index of a spindle rises."""
+    buffer, found = ffi().new("struct passo_rig_change[]", CHANGES_PER_DRAIN), [np.empty(0, CHANGE)]
+    while count := library.passo_rig_drain(rig, buffer, CHANGES_PER_DRAIN):
+        found.append(np.frombuffer(ffi().buffer(buffer), CHANGE, count).copy())
+    changes = np.concatenate(found)
+    return changes["clock"][(changes["input"] == NUMBERS["encoder_index"]) & (changes["levels"] != 0)]
 
 
 def run_linuxcnc(
@@ -150,13 +168,14 @@ def run_linuxcnc(
         (folder / "machine.toml").write_text(text or (EXAMPLE / "machine.toml").read_text())
         machine = read_machine(folder / "machine.toml")
         prepare(folder, machine, program, f"unix:{place}", changes or {})
-        with served(engine, machine, per_turn) as core:
+        rigs: list[Any] = []
+        with served(engine, machine, per_turn, rigs.extend) as core:
             with serving(core, place, keep=True) as server:
                 place.chmod(0o777)
                 done = _call(folder, "linuxcnc", "machine.ini")
-            events = server.events
+            events, turns = server.events, indexes(*rigs[0]) if rigs else np.empty(0)
         logs = [file.read_text() for file in folder.glob("linuxcnc_*.txt")]
         result = folder / "result.json"
         found = json.loads(result.read_text()) if result.exists() else {}
         empty = {"homed": False, "ended": False, "said": [], "positions": [], "ferror": [], "pins": {}}
-        return Result(**(empty | found), events=events, log="\n".join([done.stdout, done.stderr, *logs]))
+        return Result(**(empty | found), events=events, turns=turns, log="\n".join([done.stdout, done.stderr, *logs]))
