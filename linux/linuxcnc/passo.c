@@ -56,7 +56,9 @@ RTAPI_MP_INT(watchdog_ms, "after which a core with inputs stops without a host; 
 #define WORD_BITS 32u
 #define EXIT_WAITS 2000u
 #define SHARE 5u /* of a period that the wire may be busy: a fifth */
-#define PAST 16u /* reads of the encoders from which their speed is computed */
+#define TURNS_MAX 4u
+#define LOOK_WORDS 0.2 /* a read of the state, in a period */
+#define PAST 16u       /* reads of the encoders from which their speed is computed */
 #define COMMA ','
 
 struct stepgen {
@@ -109,8 +111,8 @@ static long period_ns;
 static unsigned inputs; /* of the core; 0: none */
 static uint8_t first_encoder, last_encoder;
 static bool has_encoders;
-static bool in_turns;                 /* positions and inputs are read in turns: the wire is slow */
-static bool reads_inputs;             /* it is their turn */
+static unsigned turns = 1; /* calls in which positions and inputs are read once: the wire is slow */
+static unsigned turn;      /* that of this call; the positions have the first one */
 static uint32_t read_at[PAST], reads; /* microseconds, of the encoders; their number */
 static bool outputs;
 /* A call may take longer than HAL waits before it unloads the component. */
@@ -275,20 +277,25 @@ static enum passo_error configure(void)
 	return error == PASSO_OK ? passo_servo_check(&servo, &passo, &options) : error;
 }
 
-/* Whether a period of frames would take more than its share of the wire; see passo_frame.h. */
-static bool is_slow(long period)
+/* Calls in which positions and inputs are read once, so that the frames take no more than their share of the
+ * wire; see passo_frame.h. */
+static unsigned turns_of(long period)
 {
-	const uint32_t places = servo.options.buffer > 0 ? servo.options.buffer : PASSO_SERVO_BUFFER;
-	uint32_t words =
-	    PASSO_LINE_WORDS((uint32_t)passo_machine(&passo)->axes) + outputs + PASSO_FRAME_OVERHEAD;
+	const unsigned all = passo_machine(&passo)->axes;
+	const unsigned spaced = servo.options.buffer > 0 ? servo.options.buffer : PASSO_SERVO_BUFFER;
+	const double most = (double)period * NS * linux_host.speed_hz / (WORD_BITS * SHARE);
+	const double read =
+	    all + PASSO_FRAME_OVERHEAD + (inputs > 0 ? INPUT_WORDS + PASSO_FRAME_OVERHEAD : 0);
+	double words = PASSO_LINE_WORDS(all) + outputs + PASSO_FRAME_OVERHEAD;
 
-	words += (PASSO_RAMP_WORDS + PASSO_FRAME_OVERHEAD + places - 1u) / places;
-	words += passo_machine(&passo)->axes + PASSO_FRAME_OVERHEAD;
-	if (inputs > 0)
-		words += INPUT_WORDS + PASSO_FRAME_OVERHEAD;
+	words += (double)(PASSO_RAMP_WORDS + PASSO_FRAME_OVERHEAD) / spaced + LOOK_WORDS;
 	if (has_encoders)
 		words += last_encoder - first_encoder + 1u + PASSO_FRAME_OVERHEAD;
-	return (double)words * WORD_BITS * SHARE > (double)period * NS * linux_host.speed_hz;
+	for (unsigned found = 1; found < TURNS_MAX; found++) {
+		if (words + read / found <= most)
+			return found;
+	}
+	return TURNS_MAX;
 }
 
 static void switch_on(void)
@@ -309,7 +316,7 @@ static void switch_on(void)
 			error = passo_enable(&passo, (uint8_t)axis, true);
 	}
 	*pins->lag = servo.lag;
-	in_turns = is_slow(period_ns);
+	turns = turns_of(period_ns);
 	if (error == PASSO_OK)
 		phase = ON;
 	else if (error != PASSO_ERROR_MOVING) /* until it is at rest */
@@ -451,7 +458,7 @@ static void read_stepgens(long period)
 	for (int axis = 0; axis < axes; axis++) {
 		struct stepgen *own = &pins->stepgen[axis];
 		const double scale = own->scale > 0 ? own->scale : 1;
-		const double time = (double)period * NS * (in_turns ? 2 : 1);
+		const double time = (double)period * NS * turns;
 
 		*own->counts = counts[axis];
 		*own->feedback = (counts[axis] - own->origin) / scale;
@@ -460,15 +467,14 @@ static void read_stepgens(long period)
 	}
 }
 
-/* A period after the counts were read, in whole steps like them. */
+/* Periods after the counts were read, in whole steps like them. */
 static void extrapolate(long period)
 {
 	for (int axis = 0; axis < axes; axis++) {
 		const struct stepgen *own = &pins->stepgen[axis];
-		const double scale = own->scale > 0 ? own->scale : 1;
+		const double scale = own->scale > 0 ? own->scale : 1, time = turn * (double)period * NS;
 
-		*own->feedback =
-		    (rint(own->before + *own->velocity * scale * (double)period * NS) - own->origin) / scale;
+		*own->feedback = (rint(own->before + *own->velocity * scale * time) - own->origin) / scale;
 	}
 }
 
@@ -560,12 +566,12 @@ static void read_pins(long period)
 
 	if (has_encoders)
 		read_encoders(); /* first: an index changes the origin of the positions */
-	reads_inputs = !reads_inputs;
-	if (!in_turns || !reads_inputs)
+	turn = (turn + 1u) % turns;
+	if (turn == 0u)
 		read_stepgens(period);
 	else
 		extrapolate(period);
-	if (inputs > 0 && (!in_turns || reads_inputs))
+	if (inputs > 0 && turn + 1u == turns)
 		read_inputs();
 	*pins->state = (hal_s32_t)snapshot->state;
 	*pins->cause = (hal_s32_t)snapshot->cause;

@@ -142,6 +142,42 @@ def run_hal(script: str, device: str = "", text: str = "") -> tuple[str, Any]:
         return done.stdout + done.stderr, events
 
 
+SIX_AXES = 'host = "linuxcnc"\nclock_hz = 16_000_000\n' + "".join(
+    f'[[axis]]\nname = "{letter}"\nsteps_per_mm = 80\nspeed = 100\nacceleration = 500\nswitches = ["home"]\n'
+    for letter in "XYZABC"
+)
+WIRE = """
+loadrt threads name1=servo period1=1000000
+loadrt passo device=CORE axes=6
+loadrt integ
+addf passo.0.read servo
+addf integ.0 servo
+addf passo.0.write servo
+setp integ.0.in 1
+"""
+ON = "setp passo.0.stepgen.00.enable 1\nstart\nloadusr -w sleep 2\n"
+LOOK = "getp passo.0.link.words\ngetp integ.0.out\n"
+
+
+def share_of_wire(sclk_hz: int = 4_000_000) -> float:
+    """What the frames of six axes with inputs take of it, at 1 kHz."""
+    settings = "".join(
+        f"setp passo.0.stepgen.{axis:02}.{key} {value}\n"
+        for axis in range(6)
+        for key, value in {"position-scale": 80, "maxvel": 100, "maxaccel": 1000}.items()
+    )
+    script = WIRE + settings + ON + LOOK + "loadusr -w sleep 8\n" + LOOK + "getp passo.0.fault\n"
+    said, _ = run_hal(script, text=SIX_AXES)
+    first, begun, last, ended = (number_of(word) for word in re.findall(r"^[\dx.A-F]+$", said, re.M))
+    assert "FALSE" in said.split(), said
+    return (last - first) * 32 / sclk_hz / (ended - begun)
+
+
+def number_of(text: str) -> float:
+    """Of halcmd: hexadecimal, or not."""
+    return int(text, 16) if text.startswith("0x") else float(text)
+
+
 def indexes(library: Any, rig: Any) -> Any:
     """Clocks at which the index of a spindle rises."""
     buffer, found = ffi().new("struct passo_rig_change[]", CHANGES_PER_DRAIN), [np.empty(0, CHANGE)]
