@@ -315,7 +315,7 @@ class Beside:
 
 def off_path(found: np.ndarray, places: np.ndarray) -> float:
     """The greatest distance of places, time x axis, from a path of commands, mm."""
-    parts = np.linspace(0, 1, 8, endpoint=False)[:, None, None]
+    parts = np.linspace(0, 1, 4, endpoint=False)[:, None, None]
     path = (places[:-1] * (1 - parts) + places[1:] * parts).transpose(1, 0, 2).reshape(-1, places.shape[1])
     away = np.empty(len(found))
     for first in range(0, len(found), 64):
@@ -325,7 +325,7 @@ def off_path(found: np.ndarray, places: np.ndarray) -> float:
 
 
 def one_period(seconds: float, command: Command, late: Callable[[int], float]) -> Beside:
-    """hostmot2's design: each call reads the axes and sets the rates that lead them to its command in a period.
+    """hostmot2's design: each call reads the axes, and sets rates that lead to its command in a period.
 
     The rates change by at most 1.25 times the acceleration of the commands, and last until the next call. A
     call that is late is followed at once by those that became due.
@@ -345,7 +345,9 @@ def one_period(seconds: float, command: Command, late: Callable[[int], float]) -
     grid = np.arange(0, now, PERIOD / 4)
     places = np.stack([np.interp(grid, times, np.array(track)[:, axis]) for axis in range(AXES)], axis=1)
     second = np.abs(places[16:] - 2 * places[8:-8] + places[:-16]).max() / (8 * PERIOD / 4) ** 2
-    return Beside("hostmot2's design", 1, max(errors), float(second), off_path(places, np.array(commands)))
+    return Beside(
+        "hostmot2's design", 1, max(errors), float(second), off_path(places[::8], np.array(commands))
+    )
 
 
 def beside(seed: int, seconds: float = 2, count: int = 8) -> list[Beside]:
@@ -359,7 +361,7 @@ def beside(seed: int, seconds: float = 2, count: int = 8) -> list[Beside]:
         for stop in BEARS:
             setting = replace(Setting(), stop=stop, buffer=1)
             one = run(setting, seconds, command, 0, late(), settle=2)
-            clocks = np.arange(int(one.pins["clock"][0]), int(one.pins["clock"][-1]), CLOCK_HZ // 2000)
+            clocks = np.arange(int(one.pins["clock"][0]), int(one.pins["clock"][-1]), CLOCK_HZ // 500)
             places = np.stack([one.at(axis, clocks) / SCALE for axis in range(AXES)], axis=1)
             off = off_path(places, one.places)
             label = f"stop of {stop:g} mm/s^2{name}"
@@ -384,7 +386,8 @@ def cost(axes: int = 6) -> tuple[float, float]:
     main = Path(__file__).with_suffix(".c").with_stem("servo_cost")
     subprocess.run(["cc", "-O2", *includes, main, *sources, "-o", program, "-lm"], check=True)
     counts, words = [], []
-    tool = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null"] if shutil.which("valgrind") else []
+    valgrind = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null"]
+    tool = valgrind if shutil.which("valgrind") else []
     for calls in COST_CALLS:
         with tempfile.TemporaryDirectory() as folder, model_engine(Parameters(axes=axes), CLOCK_HZ) as engine:
             place = Path(folder) / "core"
@@ -507,7 +510,7 @@ G0 X50 Y50 Z73
 M2
 """
 # a second of motion: a simulated core of RTL takes minutes for it
-SMALL_ARCS = "G21 G90 G17 G64 P0.01\nG1 F6000 X10\nG2 I4 J0\nG3 X14 Y4 I0 J4\nG1 X5 Y5 Z1\nM2\n"
+SMALL_ARCS = "G21 G90 G17 G64 P0.01\nG1 F6000 X10 Y6\nG2 I4 J0\nG3 X14 Y10 I0 J4\nG1 X5 Y5 Z1\nM2\n"
 HOME_WHERE_IT_IS = {
     **{f"HOME_{key} = {value}\n": "" for key, value in {"SEARCH_VEL": -50, "LATCH_VEL": -2}.items()},
     **{"HOME_SEARCH_VEL = 20\n": "", "HOME_LATCH_VEL = 2\n": ""},
@@ -563,7 +566,8 @@ def main() -> int:
         f"    the loop changes a line by at most {found.trim_step:.1f} ppm; rounding: {ROUNDING_PPM:g} ppm",
         f"gaps of {GAP[0]:g} to {GAP[1]:g} s slow {found.gaps_slowed} times: {found.gaps_hardest:.0f} mm/s^2",
         f"deaths of the host: {found.causes}; {found.deaths_hardest:.0f} mm/s^2",
-        f"a call of six axes: {found.instructions:.0f} instructions, {found.bytes_per_call:.1f} bytes of each axis",
+        f"a call of six axes: {found.instructions:.0f} instructions, "
+        f"{found.bytes_per_call:.1f} bytes per axis",
         *(
             f"{one.name}: lag {one.lag}, following error {one.following:.2f} mm, {one.hardest:.0f} mm/s^2, "
             f"off the path {one.off:.3f} mm"

@@ -127,7 +127,7 @@ def test_encoder_pins() -> None:
     assert [float(value) for value in re.findall(r"^-?[\d.]+$", said, re.M)] == [20, 0.5, 0, 20], said
 
 
-ENCODERS = LATHE.replace('name = "X"\nsteps_per_mm = 200', 'name = "X"\nsteps_per_mm = 80\nencoders = [40]\nfollowing = 1')
+ENCODERS = LATHE.replace("steps_per_mm = 200", "steps_per_mm = 80\nencoders = [40]\nfollowing = 1", 1)
 
 SCRIPT = """
 loadrt threads name1=servo period1=1000000 name2=slow period2=2000000
@@ -228,7 +228,8 @@ def test_the_example_is_what_make_makes(tmp_path: Path) -> None:
     assert main(["make", str(EXAMPLE / "machine.toml"), "--out", str(tmp_path)]) == 0
     for name in ("machine.ini", "machine.hal", "tool.tbl"):
         assert (tmp_path / name).read_text() == (EXAMPLE / name).read_text()
-    assert {path.name for path in EXAMPLE.iterdir()} == {"machine.ini", "machine.hal", "machine.toml", "tool.tbl"}
+    names = {path.name for path in EXAMPLE.iterdir()}
+    assert names == {"machine.ini", "machine.hal", "machine.toml", "tool.tbl"}
 
 
 def test_make_for_a_board(tmp_path: Path) -> None:
@@ -240,7 +241,8 @@ def test_make_for_a_board(tmp_path: Path) -> None:
     assert names == {"machine.ini", "machine.hal", "tool.tbl", "wiring.txt", "summary.txt"}
     wires = (tmp_path / "out" / "wiring.txt").read_text()
     assert re.search(r"^spi_sclk .* Raspberry Pi 23$", wires, re.M) and "Blue Pill" not in wires
-    (tmp_path / "h.toml").write_text('host = "linuxcnc"\nclock_hz = 8_000_000\nkinematics = "corexy"\n' + TWO_AXES)
+    shared = 'host = "linuxcnc"\nclock_hz = 8_000_000\nkinematics = "corexy"\n'
+    (tmp_path / "h.toml").write_text(shared + TWO_AXES)
     with pytest.raises(BadInputError, match="LinuxCNC drives one for each axis"):
         linuxcnc_files(read_machine(tmp_path / "h.toml"))
 

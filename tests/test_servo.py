@@ -47,7 +47,8 @@ def test_clocks_that_differ(ppm: int) -> None:
 
 def test_the_loop_finds_the_difference_of_the_clocks() -> None:
     """The trim settles at it, and the depth stays; a slow core shows minutes of it."""
-    setting = Setting(axes=1, period=0.02, clock_hz=1_000_000, scale=10, acceleration=200000, stop=200000, inputs=False)
+    hard = {"acceleration": 200000, "stop": 200000}
+    setting = Setting(axes=1, period=0.02, clock_hz=1_000_000, scale=10, **hard, inputs=False)
     found = run(setting, 900, lambda time: [0.0], -200)
     assert abs(np.median(found.trims[-5000:]) / 1000 - 200) < 20
     assert np.abs(np.median(found.depths[-5000:]) - found.lag) <= 1

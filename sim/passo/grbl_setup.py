@@ -166,7 +166,8 @@ def attach(
     """A simulated machine at the core: each axis in the middle of its travel, switches at its ends.
 
     `skews`: steps by which motors begin elsewhere; `per_turn`: counts from index to index of their encoders.
-    `spindle`: its encoder is behind the motors; it turns at full speed while output 0 is on. Returns the rigs, with their libraries.
+    `spindle`: its encoder is behind the motors; it turns at full speed while output 0 is on.
+    Returns the rigs, with their libraries.
     For the probe there is a plate that Z (or the last axis) touches a quarter of its travel below the middle.
     """
     config = ffi().new("struct passo_rig_config *")

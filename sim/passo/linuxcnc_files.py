@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Files of LinuxCNC for a machine with `host = "linuxcnc"`: INI and HAL of the component in linux/linuxcnc/."""
+"""Files of LinuxCNC for a machine with `host = "linuxcnc"`: INI, and HAL of linux/linuxcnc/."""
 
 import math
 from collections.abc import Iterator
@@ -58,7 +58,8 @@ def _ini(machine: MachineFile) -> Iterator[str]:
     yield from ("[TRAJ]", f"COORDINATES = {machine.letters}", "LINEAR_UNITS = mm", "ANGULAR_UNITS = degree")
     yield f"MAX_LINEAR_VELOCITY = {_number(fastest)}"
     yield f"DEFAULT_LINEAR_VELOCITY = {_number(fastest / 3)}"
-    yield from ("[KINS]", f"KINEMATICS = trivkins coordinates={machine.letters}", f"JOINTS = {len(machine.ends)}")
+    yield from ("[KINS]", f"KINEMATICS = trivkins coordinates={machine.letters}")
+    yield f"JOINTS = {len(machine.ends)}"
     for joint in range(len(machine.ends)):
         yield from _joint(machine, joint)
 

@@ -85,9 +85,7 @@ def alone() -> Iterator[Path]:
             shutil.rmtree(folder, ignore_errors=True)
 
 
-def prepare(
-    folder: Path, machine: MachineFile, program: str, device: str, changes: dict[str, str]
-) -> None:
+def prepare(folder: Path, machine: MachineFile, program: str, device: str, changes: dict[str, str]) -> None:
     """The configuration that `passo make` makes, without its screen, and with changes of its files."""
     for name, lines in linuxcnc_files(machine).items():
         text = "\n".join([*lines, ""])
@@ -214,4 +212,5 @@ def run_linuxcnc(
         result = folder / "result.json"
         found = json.loads(result.read_text()) if result.exists() else {}
         empty = {"homed": False, "ended": False, "said": [], "positions": [], "ferror": [], "pins": {}}
-        return Result(**(empty | found), events=events, turns=turns, log="\n".join([done.stdout, done.stderr, *logs]))
+        log = "\n".join([done.stdout, done.stderr, *logs])
+        return Result(**(empty | found), events=events, turns=turns, log=log)
