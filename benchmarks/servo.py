@@ -328,7 +328,7 @@ def one_period(seconds: float, command: Command, late: Callable[[int], float]) -
     """hostmot2's design: each call reads the axes, and sets rates that lead to its command in a period.
 
     The rates change by at most 1.25 times the acceleration of the commands, and last until the next call. A
-    call that is late is followed at once by those that became due.
+    call that is late is followed immediately by those that became due.
     """
     change, count = 1.25 * ACCELERATION * PERIOD, round((seconds + 0.2) / PERIOD)
     place = np.array(command(0.0))
@@ -353,7 +353,7 @@ def one_period(seconds: float, command: Command, late: Callable[[int], float]) -
 def beside(seed: int, seconds: float = 2, count: int = 8) -> list[Beside]:
     """Both designs, with wakes that are late by up to a tenth of a period, then with gaps as well."""
     command, found = waves(AXES, seconds), []
-    wakes = {
+    wakes: dict[str, Callable[[], Callable[[int], float]]] = {
         "": lambda: late_by(seed, 0.1 * PERIOD),
         ", gaps": lambda: gaps(seed, Setting(), seconds, count, GAP),
     }
@@ -389,7 +389,10 @@ def cost(axes: int = 6) -> tuple[float, float]:
     valgrind = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null"]
     tool = valgrind if shutil.which("valgrind") else []
     for calls in COST_CALLS:
-        with tempfile.TemporaryDirectory() as folder, model_engine(Parameters(axes=axes), CLOCK_HZ) as engine:
+        with (
+            tempfile.TemporaryDirectory() as folder,
+            model_engine(Parameters(axes=axes, clock_hz=CLOCK_HZ), CLOCK_HZ) as engine,
+        ):
             place = Path(folder) / "core"
             with serving(engine, place):
                 done = subprocess.run(

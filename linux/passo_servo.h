@@ -92,7 +92,7 @@ struct passo_servo {
 	uint32_t head, tail;            /* of the ring */
 	uint32_t cover;                 /* periods for which a ramp holds the speed, UQ16.16 */
 	uint32_t pushed_at, decided_at; /* microseconds */
-	uint32_t due, ramps;            /* that are to be sent at once; of them still to be sent */
+	uint32_t due, ramps;            /* of one push; of them still to be sent */
 	uint32_t from, to;              /* of them: parts of the full speed, UQ16.16 */
 	uint32_t calls;                 /* since ramps were sent */
 	uint32_t looked;                /* calls since the state was read */

@@ -2,6 +2,7 @@
 """linux/passo_servo.h on the C model, judged at the pins: clocks that differ, gaps, deaths, bad settings."""
 
 import random
+import re
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -10,11 +11,26 @@ import pytest
 from passo.driver import DriverError
 from passo.engine import model_engine
 from passo.registers import Cause, State
+from passo.toolchain import paths
 
-from benchmarks.servo import ACCELERATION, HARDEST, LATE, ROUNDING, Run, Servo, Setting, gaps, run, waves
+from benchmarks.servo import (
+    ACCELERATION,
+    HARDEST,
+    LATE,
+    ROUNDING,
+    Run,
+    Servo,
+    Setting,
+    cost,
+    gaps,
+    one_period,
+    run,
+    waves,
+)
 from tests.helpers.driver_wire import Noise
 
 SETTING = Setting()
+PAGE = " ".join((paths.docs / "hosts.md").read_text().split())
 SECONDS = 2.0
 PROBLEMS = ("OK", "PERIOD", "AXES", "SPEED", "ACCELERATION", "STOP", "PINS", "LAG")
 
@@ -126,6 +142,38 @@ def test_it_goes_on_after_a_stop() -> None:
             servo.call([rest / SETTING.scale, 0, 1])
         assert servo.driver.snapshot().state == State.RUN
         assert servo.driver.positions()[:3] == [rest, 0, 1 * SETTING.scale]
+
+
+@pytest.mark.parametrize(("stop", "buffer"), [(1000, 2), (10_000, 1), (40_000, 2), (40_000, 1)])
+def test_an_axis_that_bears_more_has_a_shorter_lag(stop: float, buffer: int) -> None:
+    """As the page says; nothing else changes: in step, and within its acceleration when the host dies."""
+    setting = replace(SETTING, stop=stop, buffer=buffer)
+    found = run(setting, SECONDS, waves(3, SECONDS), 200, wake(6))
+    check_in_step(found)
+    stated = 2 * buffer + 4 + setting.speed / stop / 2 / setting.period
+    assert stated - 1 <= found.lag <= stated + 2
+    if buffer == 2:
+        assert re.search({1000: r"\b59 with 1,000\b", 40_000: r"\b10 periods .* 40,000 mm"}[int(stop)], PAGE)
+        assert found.lag == {1000: 59, 40_000: 10}[int(stop)]
+    dead = run(setting, SECONDS, waves(3, SECONDS), -200, wake(7), die=977)
+    assert dead.cause == Cause.WATCHDOG.name and dead.positions == dead.made
+    assert dead.hardest <= (ACCELERATION + stop) * ROUNDING
+
+
+def test_the_cost_of_a_call() -> None:
+    """Six axes: a line, the positions, and every second call a ramp; the loop costs little time."""
+    instructions, words = cost()
+    assert words < 12 + 14 + 9 / 2 + 1
+    assert np.isnan(instructions) or instructions < 8000
+
+
+def test_a_design_with_a_lag_of_one_period() -> None:
+    """hostmot2's: it follows by the way of a period, and leaves the path where the host is late."""
+    command = waves(3, SECONDS)
+    steady = one_period(SECONDS, command, lambda call: 0.0)
+    places = np.array([command(call * SETTING.period) for call in range(int(SECONDS / SETTING.period))])
+    assert steady.following == pytest.approx(np.abs(np.diff(places, axis=0)).max(), rel=0.05)
+    assert one_period(SECONDS, command, gaps(1, SETTING, SECONDS, 4, (0.02, 0.05))).off > 1
 
 
 @pytest.mark.parametrize(

@@ -97,7 +97,7 @@ def make_machine(path: Path, out: Path | None = None, build: bool = True) -> boo
 
 
 def _folder(path: Path) -> Path:
-    return paths.results / "machines" / path.stem
+    return Path(paths.results) / "machines" / path.stem
 
 
 def _make_linuxcnc(machine: MachineFile, folder: Path, build: bool) -> bool:
