@@ -146,7 +146,7 @@ def test_it_goes_on_after_a_stop() -> None:
 
 @pytest.mark.parametrize(("stop", "buffer"), [(1000, 2), (10_000, 1), (40_000, 2), (40_000, 1)])
 def test_an_axis_that_bears_more_has_a_shorter_lag(stop: float, buffer: int) -> None:
-    """As the page says; nothing else changes: in step, and within its acceleration when the host dies."""
+    """As the page says; nothing else changes: in step, and within its acceleration when the host is gone."""
     setting = replace(SETTING, stop=stop, buffer=buffer)
     found = run(setting, SECONDS, waves(3, SECONDS), 200, wake(6))
     check_in_step(found)
