@@ -39,7 +39,7 @@ from passo.values import BadValueError, Written, shown
 FILE_KEYS = (
     *("board", "clock_hz", "junction_deviation", "arc_tolerance", "profile", "spindle_maximum", "laser"),
     *("soft_limits", "probe", "drive", "chip", "kinematics", "pins", "switches", "home", "motors", "axis"),
-    "spindle",
+    *("spindle", "host"),
 )
 AXIS_KEYS = (
     *("name", "steps_per_mm", "speed", "acceleration", "jerk", "jump", "travel", "home", "switches"),
@@ -56,6 +56,7 @@ HOME_KEYS = ("seek", "speed", "pull_off")
 HOME_ENDS = ("low", "high")
 SWITCHES = ("home", "limit_low", "limit_high")
 CHIPS = ("STM32F103C8", "STM32F103CB")
+HOSTS = ("stm32", "linuxcnc")
 PROFILES = ("linear", "cosine", "sigmoid", "jerk")
 TRAVEL = 200  # mm
 RATIO_ONE = 1 << 16  # counts per step
@@ -126,6 +127,7 @@ class MachineFile:
     chip: str = CHIPS[0]  # of the firmware
     kinematics: str = "cartesian"
     spindle: Spindle | None = None
+    host: str = HOSTS[0]
 
     @property
     def letters(self) -> str:
@@ -293,6 +295,7 @@ def _machine(path: Path, data: Table) -> MachineFile:
         read_word(data, "chip", CHIPS) if "chip" in data else CHIPS[0],
         kinematics,
         encoder,
+        read_word(data, "host", HOSTS) if "host" in data else HOSTS[0],
     )
 
 

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from passo.engine import Engine
-from passo.grbl_setup import add_encoders, core_for, machine_at, rig_config
+from passo.grbl_setup import add_encoders, core_for, machine_at, rig_config, spindle_wheel
 from passo.machine_file import MachineFile
 from passo.native import ffi
 from passo.pair_engine import PairEngine
-from passo.rig import CHANGE, CHANGES_PER_DRAIN, RATIO_ONE, interval_of
+from passo.rig import CHANGE, CHANGES_PER_DRAIN
 from passo.run import open_engine
 
 
@@ -21,8 +21,6 @@ class SpindleAt:
 
     def __init__(self, engine: Engine | PairEngine, machine: MachineFile, seed: int = 1, config: Any = None):
         """`config`: a `struct passo_rig_config` with the rest of the machine, whose encoders it has."""
-        spindle, motors = machine.spindle, len(machine.motors)
-        assert spindle
         if config is None:
             config = ffi().new("struct passo_rig_config *")
             config.axes = engine.parameters.axes
@@ -30,13 +28,7 @@ class SpindleAt:
         config.seed = seed
         self._wheel = config.wheels
         config.wheels += 1
-        config.wheel[self._wheel] = {
-            "axis": motors,
-            "interval": interval_of(machine.clock_hz, machine.gcode.spindle_maximum, spindle.counts),
-            "wander": round(spindle.wander * RATIO_ONE / 100),
-            "per_turn": spindle.counts,
-            "start_up": round(spindle.start_up * machine.clock_hz),
-        }
+        config.wheel[self._wheel] = spindle_wheel(machine)
         self._rigs = engine.attach(config)
         self._changes = ffi().new("struct passo_rig_change[]", CHANGES_PER_DRAIN)
         self._found = [np.empty(0, CHANGE)]

@@ -57,6 +57,7 @@ def rules() -> dict[str, Any]:
         "profiles": own.PROFILES,
         "kinematics": own.KINEMATICS,
         "chips": own.CHIPS,
+        "hosts": own.HOSTS,
         "home_ends": own.HOME_ENDS,
         "switches": own.SWITCHES,
         "enable_inverted": own.ENABLE_INVERTED,

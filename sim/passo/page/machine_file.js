@@ -68,6 +68,7 @@ class MachineReader {
         this.turnCounts = within("spindle", () => this.checkSpindle(spindle));
         own(data, "laser", false, readFlag);
         own(data, "chip", "", (table, key) => readWord(table, key, RULES.chips));
+        own(data, "host", "", (table, key) => readWord(table, key, RULES.hosts));
         return this.described(profile, tolerance, spindle);
     }
 
