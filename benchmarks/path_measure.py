@@ -14,7 +14,7 @@ from passo.path_rounding import SHARE, Line
 from passo.plan import PlanError
 
 from benchmarks.path_paths import Case
-from benchmarks.path_plan import plan
+from benchmarks.path_plan import Planned, plan
 from benchmarks.path_reference import fastest
 from benchmarks.path_reference_jerk import soft_seconds
 from tests.helpers.path_player import Played, Player
@@ -99,8 +99,8 @@ def _ratios(measured: Measured, lines: list[Line], settings: PathSettings, fits:
     slowest = min((feed for _, feed in lines if feed is not None), default=inf)
     rounding = 1 / planned.path.substeps_per_mm / slowest  # lines are whole substeps
     ratio, measured.paced = (seconds - rounding) / measured.optimum, paced.seconds / seconds
-    if measured.paced > PACED_AIM and len(paced.lines) == len(lines):  # none were merged
-        sent = fastest(sendable(lines, line_seconds), settings).seconds
+    if measured.paced > PACED_AIM:
+        sent = fastest(sendable(sent_lines(lines, paced), line_seconds), settings).seconds
         measured.paced = paced.seconds / max(seconds, sent)
     if settings.profile == "linear":
         measured.unlimited = ratio
@@ -111,6 +111,19 @@ def _ratios(measured: Measured, lines: list[Line], settings: PathSettings, fits:
         measured.soft = ratio * measured.optimum / soft_seconds(lines, settings)
     else:
         measured.shaped = ratio
+
+
+def sent_lines(lines: list[Line], planned: Planned) -> list[Line]:
+    """Those that are sent, of which each may be several that were merged: at the lowest of their feeds."""
+    begin = [(0.0,) * len(lines[0][0]), *(target for target, _ in lines[:-1])]
+    ends = np.cumsum([math.dist(before, target) for before, (target, _) in zip(begin, lines, strict=True)])
+    places = np.cumsum([line.substeps for line in planned.lines]) / planned.path.substeps_per_mm
+    last = np.abs(ends[:, None] - places).argmin(axis=0)
+    found: list[Line] = []
+    for i, end in enumerate(last):
+        feeds = [feed for _, feed in lines[(last[i - 1] + 1 if i else 0) : end + 1] if feed is not None]
+        found.append((lines[end][0], min(feeds, default=None)))
+    return found
 
 
 def sendable(lines: list[Line], seconds: float) -> list[Line]:

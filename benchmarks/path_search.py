@@ -3,6 +3,7 @@
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 from hypothesis import HealthCheck, Phase, given, settings, target
@@ -81,6 +82,18 @@ def fans(draw: Any) -> Piece:
 
 
 @st.composite
+def straights(draw: Any) -> Piece:
+    """Corners, and between them lines of several feeds that go straight on; some of them are slivers."""
+    sizes = draw(st.lists(st.sampled_from((0.001, 0.01, 0.1, 0.3, 1.0, 5.0)), min_size=1, max_size=4))
+    corner = draw(st.sampled_from((0.5, 3.4, 10.0, 30.0, 90.0)))
+    bends = (corner, *[0.0] * draw(st.integers(1, 4)))
+    if draw(st.booleans()):
+        bends = (*bends, *(-bend for bend in bends))
+    feeds = draw(st.lists(st.sampled_from((RAPID, 1000.0, 6000.0, 30_000.0)), min_size=2, max_size=3))
+    return Piece(draw(st.sampled_from((5, 30, 100))), tuple(sizes), bends, tuple(feeds))
+
+
+@st.composite
 def cases(draw: Any, machines: Sequence[str] = tuple(MACHINES)) -> Case:
     """A path that takes no more than some seconds."""
     machine = draw(st.sampled_from(sorted(machines)))
@@ -93,7 +106,7 @@ def cases(draw: Any, machines: Sequence[str] = tuple(MACHINES)) -> Case:
     )
     case = Case(
         machine,
-        tuple(draw(st.lists(pieces() | arcs() | fans(), min_size=1, max_size=4))),
+        tuple(draw(st.lists(pieces() | arcs() | fans() | straights(), min_size=1, max_size=4))),
         draw(st.sampled_from(profiles)),
         draw(st.sampled_from(LOOK_AHEADS)),
         draw(st.sampled_from(POLLS)),
@@ -151,5 +164,15 @@ def search(
     try:
         drawn()
     except BeyondError as error:
-        return error
+        return with_fewer_pieces(error, check)
     return None
+
+
+def with_fewer_pieces(error: BeyondError, check: Check) -> BeyondError:
+    """Without those that its kind of fault does not need: a library that shrinks gives up before."""
+    for i in reversed(range(len(error.case.pieces))):
+        case = replace(error.case, pieces=error.case.pieces[:i] + error.case.pieces[i + 1 :])
+        text = check(case).faults.get(error.kind) if case.pieces else None
+        if text is not None:
+            return with_fewer_pieces(BeyondError(error.kind, case, text), check)
+    return error

@@ -38,6 +38,7 @@ struct passo_linux {
 	bool served;           /* by a socket */
 	bool real_time;        /* which follows the clock of this computer */
 	uint32_t microseconds; /* simulated time, of the last answer */
+	uint32_t words;        /* exchanged so far; wraps */
 	bool irq_level;
 	char
 	    problem[PASSO_LINUX_PROBLEM_MAX]; /* after an error: what is wrong and what to do, one sentence */

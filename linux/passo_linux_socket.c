@@ -55,8 +55,10 @@ static bool request(struct passo_linux *host, uint32_t *words, size_t sent, size
 
 static bool transfer(void *context, const uint32_t *mosi, uint32_t *miso, size_t words)
 {
+	struct passo_linux *host = context;
 	uint32_t message[PASSO_FRAME_WORDS_MAX + ANSWER_WORDS];
 
+	host->words += (uint32_t)words;
 	message[0] = (uint32_t)words;
 	memcpy(message + 1, mosi, words * sizeof *mosi);
 	if (!request(context, message, words + 1u, words + ANSWER_WORDS))

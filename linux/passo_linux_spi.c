@@ -18,7 +18,7 @@
 
 static bool transfer(void *context, const uint32_t *send, uint32_t *receive, size_t words)
 {
-	const struct passo_linux *host = context;
+	struct passo_linux *host = context;
 	uint8_t bytes[PASSO_FRAME_WORDS_MAX * BYTES_PER_WORD];
 	const size_t size = words * BYTES_PER_WORD;
 	struct spi_ioc_transfer exchange = {
@@ -29,6 +29,7 @@ static bool transfer(void *context, const uint32_t *send, uint32_t *receive, siz
 	    .bits_per_word = BITS,
 	};
 
+	host->words += (uint32_t)words;
 	for (size_t i = 0; i < size; i++)
 		bytes[i] = (uint8_t)(send[i / BYTES_PER_WORD] >> (24u - 8u * (i % BYTES_PER_WORD)));
 	if (ioctl(host->device, SPI_IOC_MESSAGE(1), &exchange) != (int)size)

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * A line for each period, ramps that are prolonged in time, and the loop on the depth of the queue.
  *
- * All lines run under one velocity, half a substep per clock. The ramps in the core are always these: to
- * that velocity, then down to 0 in the stop time. Each later pair begins with NOW, from whatever velocity
- * there is; it is pushed only if the lines in the core reach to the end of its deceleration.
+ * All lines run under one velocity, half a substep per clock. The last ramp in the core always holds its
+ * velocity for the cover, then goes down to 0 in the stop time: a shape of its own. It is prolonged by the
+ * same ramp with NOW, after one up to full speed where that is lost, if the lines in the core reach to the
+ * end of its deceleration.
  */
 #include "passo_servo.h"
 
@@ -17,14 +18,15 @@
 #define NANOSECONDS UINT64_C(1000000000)
 #define MICROSECOND 1000u /* ns */
 #define POLLS 4u
-#define RAMPS 2u       /* of a push */
-#define FIRST_RAMPS 3u /* with the jump to the velocity at the start */
-#define NEARLY_Q16 64u /* below full speed: less than the rounding of a line */
+#define HOLD_RAMP 1u          /* the last one of a push: holds, then goes down */
+#define RISE_RAMP 2u          /* before it, unless there is full speed; at the start a jump to it */
+#define BANK PASSO_SHAPE_EASE /* its table is replaced */
+#define NEARLY_Q16 64u        /* below full speed: less than the rounding of a line */
 #define HALVINGS 8u
 #define FREE 8u     /* lines that a queue must have beyond the lag */
 #define STARTING 2u /* calls until the core begins */
 /* The line that is running, and a period since the depth was read. */
-#define UNSURE 2u
+#define UNSURE 1u
 
 /* The loop: the depth is smoothed over 2^10 periods. 2^-12 of its error is the trim, and 2^-26 of the sum of
  * the errors: critically damped with 2^-13 rad per period, at 1 kHz a bandwidth of 0.02 Hz. */
@@ -163,48 +165,78 @@ static uint32_t ticks(const struct passo_servo *servo, uint64_t periods)
 	return found > 1u ? (uint32_t)found : 1u;
 }
 
+/* Periods of the ramp that holds and goes down, UQ48.16. */
+static uint64_t hold_time(const struct passo_servo *servo)
+{
+	return servo->cover + ((uint64_t)servo->stop << 16);
+}
+
+/* It is prolonged every `buffer` periods, and then the program may be late by as many; the frames take a part
+ * of one. */
+static uint32_t cover_of(const struct passo_servo *servo)
+{
+	return 2u * servo->options.buffer + 1u;
+}
+
+/* Points of its shape while it holds. */
+static uint32_t hold_points(uint32_t cover, uint32_t stop)
+{
+	return (PASSO_TABLE_SIZE * cover + cover + stop - 1u) / (cover + stop);
+}
+
+static enum passo_error load_shape(struct passo_servo *servo)
+{
+	const uint32_t held = hold_points(cover_of(servo), servo->stop), rest = PASSO_TABLE_SIZE - held;
+	uint16_t points[PASSO_TABLE_SIZE];
+
+	for (uint32_t k = 0; k < PASSO_TABLE_SIZE; k++)
+		points[k] = k < held ? 0u : (uint16_t)(((k - held) * ONE_Q16 + rest / 2u) / rest);
+	return passo_load_table(servo->passo, BANK, points);
+}
+
 static void set_ramp(struct passo_ramp *ramp, uint64_t velocity, uint32_t ticks)
 {
 	*ramp = (struct passo_ramp){
 	    .velocity_end = velocity,
 	    .ticks = ticks,
-	    .progress_step = ticks > 1u ? PASSO_ONE_Q48 / ticks : PASSO_PROGRESS_STEP_MAX,
+	    .progress_step = ticks > 1u ? (PASSO_ONE_Q48 + ticks / 2u) / ticks : PASSO_PROGRESS_STEP_MAX,
 	};
 }
 
 static bool give_ramp(void *context, struct passo_ramp *ramp)
 {
 	struct passo_servo *servo = context;
-	const uint32_t cover = servo->cover << 16;
+	const bool runs = servo->phase == PASSO_SERVO_RUNS;
 
-	if (servo->ramps == RAMPS && servo->phase == PASSO_SERVO_RUNS
-	    && (passo_snapshot(servo->passo)->ramp_room < RAMPS
-	        || now(servo) - servo->decided_at > microseconds(servo, servo->cover) / 2u))
+	if (runs && servo->ramps == servo->due
+	    && (passo_snapshot(servo->passo)->ramp_room < servo->due
+	        || now(servo) - servo->decided_at > microseconds(servo, 1) / 2u))
 		servo->ramps = 0; /* it was decided too long ago, or the two would be parted */
 	if (servo->ramps == 0u)
 		return false;
-	servo->ramps--;
-	if (servo->ramps == 2u) {
-		*ramp = (struct passo_ramp){.velocity_end = VELOCITY};
-	} else if (servo->ramps == 1u) {
+	if (servo->ramps == RISE_RAMP) {
 		set_ramp(ramp, (VELOCITY >> 16) * servo->to,
-		    ticks(servo, (uint64_t)(servo->to - servo->from) * servo->stop + cover));
-		ramp->now = servo->phase == PASSO_SERVO_RUNS;
+		    runs ? ticks(servo, (uint64_t)(servo->to - servo->from) * servo->stop) : 0u);
 	} else {
-		set_ramp(ramp, 0, ticks(servo, (uint64_t)servo->to * servo->stop));
+		set_ramp(ramp, 0, ticks(servo, hold_time(servo)));
+		ramp->shape = BANK;
 		servo->pushed_at = servo->decided_at;
+		servo->calls = 0;
 	}
+	ramp->now = runs && servo->ramps == servo->due;
+	servo->ramps--;
 	return true;
 }
 
 /* -------------------------------------------------------------------------------------- the ramps ---- */
 
-/* Lines that a pair of ramps from one speed to another takes, up to its end, UQ48.16. */
+/* Lines that the ramps take to their end: from a speed to another, which is held, then down to 0; UQ48.16. */
 static uint64_t lines_of(const struct passo_servo *servo, uint64_t from, uint64_t to)
 {
-	const uint64_t rise = (to - from) * servo->stop + ((uint64_t)servo->cover << 16);
-
-	return ((from + to) * rise + to * to * servo->stop) >> 17;
+	/* the shape keeps its proportions, so that it goes down in the whole stop time from any speed */
+	return ((from + to) * (to - from) * servo->stop
+	           + to * (2u * (uint64_t)servo->cover + ((uint64_t)servo->stop << 16)))
+	    >> 17;
 }
 
 /* The highest speed that the lines in the core allow, at least `from`; 0: they do not allow even that. */
@@ -231,10 +263,11 @@ static uint32_t reachable(const struct passo_servo *servo, uint32_t from)
 static enum passo_error decide(struct passo_servo *servo)
 {
 	const uint32_t since = now(servo) - servo->pushed_at;
-	const bool sure = servo->full && since + microseconds(servo, 1) < microseconds(servo, servo->cover);
+	const bool sure =
+	    servo->full && since + microseconds(servo, 1) < microseconds(servo, servo->cover >> 16);
 	uint32_t from = ONE_Q16;
 
-	if (since < microseconds(servo, servo->options.buffer))
+	if (++servo->calls < servo->options.buffer)
 		return PASSO_OK;
 	servo->decided_at = now(servo);
 	if (!sure) {
@@ -253,7 +286,7 @@ static enum passo_error decide(struct passo_servo *servo)
 		return PASSO_OK; /* it decelerates until there are more lines */
 	servo->from = from;
 	servo->to = to;
-	servo->ramps = RAMPS;
+	servo->ramps = servo->due = to > from ? RISE_RAMP : HOLD_RAMP;
 	return PASSO_OK;
 }
 
@@ -335,17 +368,19 @@ static enum passo_servo_problem check_axis(struct passo_servo *servo, uint8_t ax
 	servo->axis = axis;
 	servo->top[axis] = passo_mul_div(limits->speed, period, NANOSECONDS);
 	servo->change[axis] =
-	    passo_mul_div(passo_mul_div(limits->acceleration / 2u, period, NANOSECONDS), period, NANOSECONDS);
+	    passo_mul_div(passo_mul_div(limits->acceleration, period, NANOSECONDS), period, NANOSECONDS);
 	if (servo->top[axis] == 0u)
 		return PASSO_SERVO_SPEED;
 	if (servo->change[axis] == 0u)
 		return PASSO_SERVO_ACCELERATION;
+	if (limits->stop == 0u)
+		return PASSO_SERVO_STOP;
 	/* a line may be shorter by the trim, and round up a step */
 	if (limits->speed > highest - highest / (1000000u / PASSO_SERVO_TRIM_MAX)
 	    || servo->top[axis] > servo->substeps - servo->substeps / 64u)
 		return PASSO_SERVO_PINS;
-	const uint64_t stop = passo_mul_div_ceil(
-	    passo_mul_div_ceil(limits->speed, NANOSECONDS * 2u, limits->acceleration), 1, period);
+	const uint64_t stop =
+	    passo_mul_div_ceil(passo_mul_div_ceil(limits->speed, NANOSECONDS, limits->stop), 1, period);
 	if (stop > UINT16_MAX)
 		return PASSO_SERVO_LAG;
 	if (stop > servo->stop)
@@ -370,8 +405,12 @@ static enum passo_servo_problem check(struct passo_servo *servo)
 		if (problem != PASSO_SERVO_OK)
 			return problem;
 	}
-	servo->cover = 2u * options->buffer;
-	servo->lag = servo->cover + (servo->stop + 1u) / 2u + PASSO_SERVO_MARGIN;
+	const uint32_t held = hold_points(cover_of(servo), servo->stop);
+	if (held == PASSO_TABLE_SIZE)
+		return PASSO_SERVO_LAG;
+	servo->cover = (uint32_t)(((uint64_t)servo->stop * held << 16) / (PASSO_TABLE_SIZE - held));
+	servo->lag =
+	    (uint32_t)((lines_of(servo, ONE_Q16, ONE_Q16) + ONE_Q16 - 1u) >> 16) + PASSO_SERVO_MARGIN;
 	return servo->lag + FREE > servo->places ? PASSO_SERVO_LAG : PASSO_SERVO_OK;
 }
 
@@ -406,6 +445,8 @@ static enum passo_error take_over(struct passo_servo *servo)
 		error = passo_clear(servo->passo);
 	if (error == PASSO_OK)
 		error = passo_configure_motion(servo->passo, stop, stop, 0);
+	if (error == PASSO_OK)
+		error = load_shape(servo);
 	return error == PASSO_OK ? passo_positions(servo->passo, servo->steps) : error;
 }
 
@@ -426,7 +467,7 @@ enum passo_error passo_servo_start(struct passo_servo *servo)
 	}
 	servo->rest = servo->lag - STARTING;
 	servo->head = servo->tail = 0;
-	servo->ramps = FIRST_RAMPS;
+	servo->ramps = servo->due = RISE_RAMP;
 	servo->from = servo->to = ONE_Q16;
 	servo->full = true;
 	servo->error = 0; /* the difference of the clocks is still the same */

@@ -13,8 +13,9 @@
  * along the lines that it knows; each call that comes in time prolongs it. So the path is kept when the
  * program is late: it slows down, holds, and continues when the program does. Nothing is dropped.
  *
- * Half of the acceleration of an axis is for the commands, and half for this slowing down. So the lag in
- * periods is 2 `buffer` + PASSO_SERVO_MARGIN + (speed / acceleration) / period, for the slowest axis.
+ * What the core has cannot be taken back, only added to. So the way to standstill is always in its queue, and
+ * the lag in periods is 2 `buffer` + PASSO_SERVO_MARGIN + (speed / stop / 2) / period, for the axis that
+ * needs the longest; up to a few more where that is long.
  *
  * Integers alone, no heap. Positions are steps of the core in Q31.32.
  */
@@ -27,8 +28,8 @@
 extern "C" {
 #endif
 
-#define PASSO_SERVO_BUFFER 5u          /* periods, unless another number is given */
-#define PASSO_SERVO_MARGIN 4u          /* lines */
+#define PASSO_SERVO_BUFFER 2u          /* periods, unless another number is given */
+#define PASSO_SERVO_MARGIN 3u          /* lines */
 #define PASSO_SERVO_LINES 1024u        /* that wait for the core after a gap */
 #define PASSO_SERVO_PERIOD_MIN 100000u /* ns */
 #define PASSO_SERVO_PERIOD_MAX 50000000u
@@ -36,7 +37,9 @@ extern "C" {
 
 struct passo_servo_axis {
 	uint64_t speed;        /* UQ32.32 steps/s; up to 1 % above it while a lag is made up */
-	uint64_t acceleration; /* UQ32.32 steps/s^2, at least twice that of the commands */
+	uint64_t acceleration; /* UQ32.32 steps/s^2, of the commands */
+	uint64_t
+	    stop; /* UQ32.32 steps/s^2 beyond it that the axis bears while a late program slows the path */
 };
 
 struct passo_servo_options {
@@ -52,6 +55,7 @@ enum passo_servo_problem {
 	PASSO_SERVO_AXES,         /* none, or more than the channel has */
 	PASSO_SERVO_SPEED,        /* the speed of an axis is 0 */
 	PASSO_SERVO_ACCELERATION, /* its acceleration is 0 */
+	PASSO_SERVO_STOP,         /* its deceleration is 0 */
 	PASSO_SERVO_PINS,         /* its pins do not make that speed, or are not configured */
 	PASSO_SERVO_LAG           /* the queue of the core is shorter than the lag */
 };
@@ -86,10 +90,11 @@ struct passo_servo {
 	uint8_t directions;
 	uint32_t rest;                  /* lines without steps, before the first one */
 	uint32_t head, tail;            /* of the ring */
-	uint32_t cover;                 /* periods for which a ramp holds the speed */
+	uint32_t cover;                 /* periods for which a ramp holds the speed, UQ16.16 */
 	uint32_t pushed_at, decided_at; /* microseconds */
-	uint32_t ramps;                 /* that are due */
+	uint32_t due, ramps;            /* of one push; of them still to be sent */
 	uint32_t from, to;              /* of them: parts of the full speed, UQ16.16 */
+	uint32_t calls;                 /* since ramps were sent */
 	uint32_t looked;                /* calls since the state was read */
 	bool full;                      /* the path has its full speed, as far as is known */
 	int64_t error, sum;             /* of the loop: lines, Q31.32; their sum */

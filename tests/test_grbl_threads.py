@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Motions in step with the spindle through the grbl protocol, at the pins of the C model."""
 
+import io
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -9,11 +10,13 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
+from passo.cli import main
 from passo.engine import moves_of
+from passo.grbl import talk
 from passo.machine_file import MachineFile, read_machine
 from passo.part import FOLLOWS_PER_SECOND, LOOPS_PER_SECOND, Played, core_of
 from passo.run import open_engine
-from passo.spindle_at import SpindleAt
+from passo.spindle_at import SpindleAt, turning_machine_at
 
 from benchmarks.rigid_tapping import AXIS, STEPS_PER_MM, WITHIN, judge
 from tests.helpers.grbl_console import GrblConsole
@@ -163,3 +166,78 @@ def test_without_an_encoder(tmp_path: Path) -> None:
         session.grbl.c.setup.turn_counts = 0
         assert session.line("$12=0.002") == "ok" and session.line("M3 S60") == "ok"
         assert session.line("G33 X5 K1") == "error:20"
+
+
+@contextmanager
+def turning(folder: Path, head: str = SMALL) -> Iterator[tuple[GrblConsole, list[np.ndarray]]]:
+    """What `passo console --grbl` has for a file, and the events of its pins."""
+    path = folder / "machine.toml"
+    path.write_text(head + "".join(AXIS.format(name, STEPS_PER_MM if name == "Z" else 80) for name in "XZ"))
+    machine = read_machine(path)
+    with turning_machine_at("model", machine) as (engine, spindle):
+        console, drain, events = GrblConsole(engine, machine, None, None, spindle), engine.drain, []
+        engine.drain = lambda: events.append(drain())
+        console.limit(20)
+        yield console, events
+
+
+def ways(events: list[np.ndarray], axis: int) -> list[int]:
+    """Steps of an axis from turn to turn."""
+    moves = moves_of(np.concatenate(events), axis)
+    moves = moves[moves != 0]
+    return [int(part.sum()) for part in np.split(moves, np.flatnonzero(np.diff(moves)) + 1)]
+
+
+def test_the_console_turns_the_spindle(tmp_path: Path) -> None:
+    """G33 and G95 are executed; threads and taps that are typed become such lines, from where the tool is."""
+    with turning(tmp_path) as (console, events):
+        talk(["$X", "M3 S600", "G0 Z2", "G95 F.5", "G1 X1", "G94", "G33 Z1 K.5"], console.grbl)
+        assert console.answers == ["ok"] * 7 and console.fields("MPos") == [1, 1]
+        events.clear()
+        talk(["G17 G0 Z2 F300", "G84 Z0 R1.5"], console.grbl)
+        assert set(console.answers) == {"ok"}
+        up, down = ways(events, 1)[:2]  # up to 2, down to 0 and over
+        assert up == STEPS_PER_MM and -3 * STEPS_PER_MM < down < -2 * STEPS_PER_MM
+        assert console.fields("MPos") == [1, 2]
+        events.clear()
+        talk(["G18 G0 X4 Z2", "G76 P.5 Z1 I-1 J.2 K.4"], console.grbl)
+        assert set(console.answers) == {"ok"} and console.fields("MPos") == [4, 1]
+        deep = [way for way in ways(events, 1) if way < 0]
+        assert deep == [-STEPS_PER_MM] * 2  # of both depths, 0.2 and 0.4
+
+
+def test_what_the_console_refuses_of_a_tap(tmp_path: Path) -> None:
+    """With its reason; a row of taps ends with another motion, and with the program."""
+    with turning(tmp_path) as (console, _):
+        talk(["$X", "G17 G0 Z2 F300 S600", "G84 Z0 R1.5"], console.grbl)
+        assert console.answers == ["ok", "ok", "error:20"] and "[MSG:G84 needs M3]\r\nerror:20" in console.log
+        console.log = ""
+        talk(["M3 S600", "G84 Z1 R1.5", "G80", "X1", "M2", "G1 X2 F600"], console.grbl)
+        assert console.answers[-4:] == ["ok", "error:31", "ok", "ok"]
+        assert console.fields("MPos") == [2, 2]
+
+
+def test_diameters_of_a_thread_that_is_typed(tmp_path: Path) -> None:
+    """After G7 its X, I, J and K are diameters; G7 stays."""
+    with turning(tmp_path) as (console, _):
+        talk(["$X", "G7 G18", "M3 S600", "G0 X8 Z2", "G76 P.5 Z1 I-2 J.8 K1"], console.grbl)
+        assert set(console.answers) == {"ok"} and console.fields("MPos") == [4, 1]
+        talk(["G0 X10"], console.grbl)
+        assert console.fields("MPos") == [5, 1]
+
+
+def test_a_machine_without_the_encoder_refuses(tmp_path: Path) -> None:
+    with turning(tmp_path, "clock_hz = 4_000_000\nspindle_maximum = 1000\n") as (console, _):
+        talk(["$X", "M3 S600", "G33 Z-1 K1"], console.grbl)
+        assert console.answers == ["ok", "ok", "error:20"]
+
+
+def test_the_command(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "machine.toml"
+    path.write_text(SMALL + AXIS.format("X", 80) + AXIS.format("Z", STEPS_PER_MM))
+    monkeypatch.setattr("sys.stdin", io.StringIO("M3 S600\nG0 Z2\nG33 Z1 K.5\nM30\n?\n"))
+    assert main(["console", "--grbl", "--machine", str(path)]) == 0
+    told = capsys.readouterr().out
+    assert "error" not in told and "MPos:0.000,1.000" in told

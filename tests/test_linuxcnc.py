@@ -4,22 +4,18 @@
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
+from passo.cli import main
 from passo.engine import moves_of
+from passo.failure import BadInputError
+from passo.linuxcnc_files import linuxcnc_files
+from passo.machine_file import read_machine
 from passo.toolchain import paths
 
-from tests.helpers.linuxcnc import COMPONENT, EXAMPLE, component, run_hal, run_linuxcnc
+from benchmarks.servo import ARCS, SHARE_MAX
+from tests.helpers.linuxcnc import COMPONENT, EXAMPLE, component, run_hal, run_linuxcnc, share_of_wire
 
-PROGRAM = """
-G21 G90 G17 G64 P0.01
-G0 X60 Y60 Z74
-G1 F6000 X80
-G2 I15 J0
-G3 X110 Y90 I15 J15
-G1 X60 Y70
-G0 X50 Y50 Z73
-M2
-"""
 END = [50.0, 50.0, 73.0]
 SCALES = [80, 80, 400]
 PERIOD = 0.001
@@ -30,7 +26,7 @@ HAL, INI = ((EXAMPLE / f"machine.{kind}").read_text() for kind in ("hal", "ini")
 
 def test_homing_and_arcs() -> None:
     """Three axes on their switches, a circle and arcs at 6,000 mm/min: the end is exact, without a fault."""
-    found = run_linuxcnc(PROGRAM)
+    found = run_linuxcnc(ARCS)
     assert found.homed and found.ended and not found.said, (found.said, found.log)
     assert found.positions == pytest.approx(END, abs=1e-9)
     value = found.pins.__getitem__
@@ -44,6 +40,94 @@ def test_homing_and_arcs() -> None:
     for joint in (0, 1):  # one step plus the lag
         assert found.ferror[joint] <= FASTEST * PERIOD * (lag + 3) + 1 / SCALES[joint]
 
+
+LATHE = """
+host = "linuxcnc"
+clock_hz = 16_000_000
+spindle_maximum = 300
+[spindle]
+counts = 4000
+[pins]
+step_high = "2 us"
+step_low = "2 us"
+[[axis]]
+name = "X"
+steps_per_mm = 200
+speed = 50
+acceleration = 500
+[[axis]]
+name = "Z"
+steps_per_mm = 200
+speed = 80
+acceleration = 500
+"""
+THREADS = """
+G21 G90 G18
+G0 X5 Z15
+M3 S300
+G33 Z5 K1
+G0 X6
+G0 Z16
+G0 X5
+G33 Z5 K1
+M5
+G0 X8 Z2
+M2
+"""
+OFF_THREAD = 0.005  # mm
+OFF_BEGIN = 0.04  # turns: LinuxCNC takes the phase when its axis has the speed of the spindle
+
+
+def test_threads() -> None:
+    """Two passes of G33, from different places, in step with the encoder: pitch and phase at the pins."""
+    found = run_linuxcnc(THREADS, text=LATHE)
+    assert found.homed and found.ended and not found.said, (found.said, found.log)
+    assert found.positions == pytest.approx([8, 2], abs=1e-9)
+    steps = moves_of(found.events, 1)
+    turns = np.interp(found.events["clock"][steps != 0], found.turns, np.arange(len(found.turns)))
+    places = np.cumsum(steps[steps != 0]) / 200
+    inside = (places > 6) & (places < 14) & (np.diff(places, append=0) < 0)
+    passes = [one for one in np.split(np.arange(len(places)), np.flatnonzero(~inside)) if len(one) > 1000]
+    assert len(passes) == 2
+    begins = []
+    for one in passes:
+        pitch, at = np.polyfit(turns[one[1:]], places[one[1:]], 1)
+        assert pitch == pytest.approx(-1, abs=0.0005)  # the loop makes up a line or two
+        assert np.abs(turns[one[1:]] * pitch + at - places[one[1:]]).max() < OFF_THREAD
+        begins.append((10 - at) / pitch)
+    assert abs((begins[1] - begins[0] + 0.5) % 1 - 0.5) < OFF_BEGIN
+
+
+def test_home_by_index() -> None:
+    """The switch, then the index of the motor's encoder, which becomes the place of the home."""
+    example = (EXAMPLE / "machine.toml").read_text()
+    text = example.replace("steps_per_mm = 80\n", "steps_per_mm = 80\nencoders = [40]\nfollowing = 1\n", 1)
+    changes = {
+        "[JOINT_0]\n": "[JOINT_0]\nHOME_USE_INDEX = YES\n",
+        "net fault ": "net x-index passo.0.stepgen.00.index-enable joint.0.index-enable\nnet fault ",
+    }
+    found = run_linuxcnc("G21 G90\nG0 X50 Y50\nG0 X55\nM2\n", changes=changes, text=text, per_turn=200)
+    assert found.homed and found.ended and not found.said, (found.said, found.log)
+    home = int(moves_of(found.events, 0).sum()) - 55 * SCALES[0]
+    per_turn = 200 * SCALES[0] // 40
+    assert abs((home + per_turn // 2) % per_turn - per_turn // 2) <= 2  # a count
+    switch = -100 * SCALES[0]  # from the middle of the travel
+    assert switch - per_turn < home < switch + 5 * SCALES[0]
+    assert found.pins["passo.0.stepgen.00.index-enable"] == "FALSE"
+
+
+def test_encoder_pins() -> None:
+    """Counts, scale, reset and the sentences; without pins where none is asked for."""
+    script = SCRIPT.replace("AXES", "1 encoders=0").replace("start\n", "")
+    script += f"setp passo.0.encoder.00.scale 40\n{STEPGEN}position-cmd 0.5\n{STEPGEN}enable 1\nstart\n"
+    script += 8 * PAUSE + "getp passo.0.encoder.00.count\ngetp passo.0.encoder.00.position\n"
+    script += f"setp passo.0.encoder.00.reset 1\n{PAUSE}getp passo.0.encoder.00.count\n"
+    script += "getp passo.0.encoder.00.rawcounts\n"
+    said, _ = run_hal(script, text=ENCODERS)
+    assert [float(value) for value in re.findall(r"^-?[\d.]+$", said, re.M)] == [20, 0.5, 0, 20], said
+
+
+ENCODERS = LATHE.replace("steps_per_mm = 200", "steps_per_mm = 80\nencoders = [40]\nfollowing = 1", 1)
 
 SCRIPT = """
 loadrt threads name1=servo period1=1000000 name2=slow period2=2000000
@@ -61,12 +145,20 @@ CHANGES = {
     "position-scale 0": "stepgen.00.position-scale is 0: set it to the steps per unit, above 0",
     "position-scale -80": "stepgen.00.position-scale is -80: set it to the steps per unit, above 0",
     "maxvel 0": "stepgen.00.maxvel is 0: set it to the MAX_VELOCITY of the joint",
-    "maxaccel 0": "stepgen.00.maxaccel is 0: set it to twice the MAX_ACCELERATION of the joint",
-    "maxaccel 200": "to stop from maxvel within maxaccel takes 1000 periods, the core has ",
+    "maxaccel 0": "stepgen.00.maxaccel is 0: set it to the MAX_ACCELERATION of the joint, or more",
+    "maxaccel 200": "to stop from maxvel within stopaccel takes 500 periods, the core has ",
+    "stopaccel -1": "stepgen.00.stopaccel is -1: set it to what the axis bears; 0: as maxaccel",
     "steplen 200000": "stepgen.00.maxvel needs more steps than steplen and stepspace allow: ",
     "position-cmd 1e9": "stepgen.00.position-cmd is 1e+09: beyond 2^31 steps",
 }
-GOOD = {"position-scale": "80", "maxvel": "100", "maxaccel": "4000", "steplen": "5000", "position-cmd": "0"}
+GOOD = {
+    "position-scale": "80",
+    "maxvel": "100",
+    "maxaccel": "4000",
+    "stopaccel": "0",
+    "steplen": "5000",
+    "position-cmd": "0",
+}
 
 
 def test_settings_that_are_wrong() -> None:
@@ -99,6 +191,8 @@ def test_settings_that_are_wrong() -> None:
     [
         ("8", "", "axes, the program needs 8: build it with AXES=8"),
         ("9", "", "passo: axes=9: a core has 1 to 8 axes"),
+        ("1 encoders=0", "", "passo: encoders=0: the core has no encoders: build it with ENCODERS=1"),
+        ("1 encoders=9", "", "passo: encoders=9: numbers of encoders from 0 to 3, with commas between them"),
         ("3", "/dev/none", "passo: /dev/none: there is no such device: switch SPI on"),
     ],
 )
@@ -109,12 +203,17 @@ def test_what_cannot_be_loaded(axes: str, device: str, sentence: str) -> None:
     assert not any(moves_of(events, axis).any() for axis in range(3))
 
 
+def test_six_axes_on_a_slow_wire() -> None:
+    """With inputs they take a fifth of 4 MHz at 1 kHz: positions and inputs are read in turns."""
+    assert 0.1 < share_of_wire() <= SHARE_MAX
+
+
 def test_the_page_lists_the_pins() -> None:
     """Each pin and parameter of the component, and no other; the example uses its functions."""
     source = (COMPONENT / "passo.c").read_text()
     own = set(re.findall(r'name, axis, "([a-z-]+)"', source))
     rest = set(re.findall(r'PREFIX "([a-z.-]+)"', source)) - {"read", "write"}
-    assert len(own) == 18 and len(rest) > 8
+    assert len(own) == 28 and len(rest) > 8
     for name in own | rest:
         assert f"`{name}`" in PAGE or f"`passo.0.{name}`" in PAGE, name
     assert "addf passo.0.read" in HAL and "addf passo.0.write" in HAL
@@ -124,7 +223,29 @@ def test_it_compiles_without_a_warning() -> None:
     assert component().exists()
 
 
-def test_the_example_is_complete() -> None:
-    """The machine file of the simulation has the axes of the INI file."""
-    names = {path.name for path in Path(EXAMPLE).iterdir()}
+def test_the_example_is_what_make_makes(tmp_path: Path) -> None:
+    """Of its machine file."""
+    assert main(["make", str(EXAMPLE / "machine.toml"), "--out", str(tmp_path)]) == 0
+    for name in ("machine.ini", "machine.hal", "tool.tbl"):
+        assert (tmp_path / name).read_text() == (EXAMPLE / name).read_text()
+    names = {path.name for path in EXAMPLE.iterdir()}
     assert names == {"machine.ini", "machine.hal", "machine.toml", "tool.tbl"}
+
+
+def test_make_for_a_board(tmp_path: Path) -> None:
+    """Its wires lead to a Raspberry Pi; what the component does not drive is refused."""
+    router = (paths.examples / "machines" / "router.toml").read_text()
+    (tmp_path / "router.toml").write_text('host = "linuxcnc"\n' + router)
+    assert main(["make", str(tmp_path / "router.toml"), "--out", str(tmp_path / "out"), "--no-build"]) == 0
+    names = {path.name for path in (tmp_path / "out").iterdir()}
+    assert names == {"machine.ini", "machine.hal", "tool.tbl", "wiring.txt", "summary.txt"}
+    wires = (tmp_path / "out" / "wiring.txt").read_text()
+    assert re.search(r"^spi_sclk .* Raspberry Pi 23$", wires, re.M) and "Blue Pill" not in wires
+    shared = 'host = "linuxcnc"\nclock_hz = 8_000_000\nkinematics = "corexy"\n'
+    (tmp_path / "h.toml").write_text(shared + TWO_AXES)
+    with pytest.raises(BadInputError, match="LinuxCNC drives one for each axis"):
+        linuxcnc_files(read_machine(tmp_path / "h.toml"))
+
+
+AXIS = "[[axis]]\nsteps_per_mm = 80\nspeed = 100\nacceleration = 500\n"
+TWO_AXES = AXIS + AXIS

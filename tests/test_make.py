@@ -152,6 +152,7 @@ MORE = "".join(
     f'[[axis]]\nname = "{name}"\nsteps_per_mm = 80\nspeed = 10\nacceleration = 100\n' for name in "AB"
 )
 ONE = MORE[: MORE.index("[[axis]]", 1)]
+SPINDLE = "[spindle]\ncounts = 4000\n[[axis]]"
 WRONG = [
     ("board =", "bord =", "unknown key 'bord'; did you mean board?"),
     ('"hx8k"', '"hx8"', "board must be one of .*, not 'hx8'; did you mean hx8k?"),
@@ -216,8 +217,40 @@ WRONG = [
     ("[[axis]]", "[[axs]]", "unknown key 'axs'; did you mean axis?"),
     ("spindle_maximum = 24000", "spindle_maximum = 0", "spindle_maximum must be 1 to"),
     ("[switches]", "[switches", "Expected"),
+    ("[[axis]]", SPINDLE, 'spindle: the firmware for STM32F103C8 has no threads, chip = "STM32F103CB" has'),
     (TEXT, TEXT + MORE, "axes: 5 requested, but the table has pins for 4"),
 ]
+
+
+def test_the_encoder_of_a_spindle(tmp_path: Path) -> None:
+    """It has the pins of the axis behind the motors, whose others lead nowhere; firmware and core know it."""
+    path = tmp_path / "mill.toml"
+    path.write_text('chip = "STM32F103CB"\n' + TEXT.replace("[[axis]]", SPINDLE, 1))
+    results = made(path, tmp_path / "out")
+    rows = {line.split()[0]: re.split(r" {2,}", line)[1:] for line in results["wiring.txt"]}
+    assert rows["encoder_a[3]"] == ["B7", "J1 21", "encoder of the spindle: A"]
+    assert rows["encoder_b[3]"] == ["C7", "J1 22", "encoder of the spindle: B"]
+    assert rows["encoder_index[3]"] == ["C6", "J1 26", "encoder of the spindle: index"]
+    assert {rows[f"{name}[3]"][-1] for name in ("step", "dir", "enable")} == {"not connected"}
+    assert {rows[f"{name}[3]"][-1] for name in ("home", "limit_low", "alarm")} == {"ground"}
+    assert rows["encoder_a[0]"][-1] == "ground" and rows["step[2]"][-1].startswith("drive Z")
+    assert any("AM26LV32" in line for line in results["wiring.html"])
+    assert not any("AM26LV32" in line for line in made(ROUTER, tmp_path / "router")["wiring.html"])
+    machine = read_machine(path)
+    assert make_command.core_of(machine) == (4, 96.0, ("inputs", "encoders", "outputs"))
+    assert make_command.definitions(machine)["TURN_COUNTS"] == 4000
+    assert (core_for(machine).axes, core_for(machine).encoders) == (4, 1)
+
+
+def test_boards_without_pins_for_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "mill.toml"
+    for name, said in (
+        ("ulx3s", "the table has no pins for part 'encoders'"),
+        ("icebreaker", "inputs.home: 4 are needed for 4 axes, the table has 3"),
+    ):
+        path.write_text('chip = "STM32F103CB"\n' + TEXT.replace("[[axis]]", SPINDLE, 1).replace("hx8k", name))
+        assert main(["make", str(path), "--no-build"]) == 2
+        assert said in capsys.readouterr().err
 
 
 SMALL = [  # machines that other boards cannot be

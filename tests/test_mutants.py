@@ -175,8 +175,9 @@ def test_a_change_costs_the_mutants_of_its_file(tmp_path: Path, monkeypatch: pyt
     ]
     asked: list[dict[str, Any]] = []
 
-    class Answers:
-        root = tmp_path
+    class Answers(Worker):
+        def __init__(self) -> None:
+            self.root = tmp_path
 
         def ask(self, what: dict[str, Any]) -> dict[str, Any]:
             asked.append(what)
@@ -203,6 +204,22 @@ def test_a_change_costs_the_mutants_of_its_file(tmp_path: Path, monkeypatch: pyt
     file.write_text("# another test")
     assert c_judge.Judge(Answers(), known(other), other, found).again() == 1
     assert len(asked) == 6
+
+
+def test_what_killed_nearby_comes_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a mutant: the test that killed in its function, then one of each file before the second; what has
+    killed nothing so far is the last of its file."""
+    monkeypatch.setattr(fates, "BUILD", tmp_path)
+    found = fates.Fates("c", "", again=False)
+    mutants = [CMutant(n, "a.c", n, 1, f"f{n % 2}", "operator", n, "", "a") for n in range(4)]
+    names = frozenset(mutant.name for mutant in mutants)
+    known = [c_judge.Test(name, "", 0.1, names) for name in ("x::1", "x::2", "x::3", "y::1", "z::1")]
+    cases = [test.case(mutants[0]) for test in known]
+    found.of[mutants[1].name] = fates.Fate(killed=cases[2], tried=[cases[0], cases[2]])
+    kills = c_judge.Kills(mutants, found)
+    first, *others = (test.name for test in kills.chosen(mutants[3], known, 10.0))
+    assert first == "x::3" and others == ["y::1", "z::1", "x::2", "x::1"]
+    assert len(kills.chosen(mutants[3], known, 0.25)) == 2
 
 
 def test_the_tests_kill_mutants_in_c(tmp_path: Path) -> None:

@@ -110,6 +110,7 @@ speed = 50
 acceleration = 500
 """,
 }
+KINDS["spindle on a board"] = KINDS["spindle"].replace("clock_hz = 64_000_000", 'board = "hx8k"')
 # What is put in place of a value, and lines that are put between others; "⏎" is the end of a line.
 VALUES = r"""
  | 1 | 0 | -1 | 1.0 | 0.5 | -0.0 | 1e9

@@ -92,7 +92,7 @@ def stage_api() -> None:
         index.append(f"* [{header.name}](../{place(header)})")
     index += ["", "## Python: `passo`", ""]
     package = paths.sim / "passo"
-    for module in sorted(package.rglob("*.py")):
+    for module in sorted(set(package.rglob("*.py")) - set((package / "page").iterdir())):
         name = ".".join(module.relative_to(package.parent).with_suffix("").parts).removesuffix(".__init__")
         (folder / f"{name}.md").write_text(f"# {name}\n\n::: {name}\n", encoding="utf-8")
         index.append(f"* [{name}]({name}.md)")

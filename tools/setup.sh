@@ -5,8 +5,8 @@
 # A SET is an optional set of Python packages in requirements-SET.txt (dev, yosys, ...); or `firmware`:
 # Debian's compiler for the STM32; or `browser`: Debian's headless Chromium and Firefox, and axe, where npm is; or
 # `vhdl`: Debian's GHDL; or `gcode`: rs274, the interpreter of Debian's LinuxCNC; or `linuxcnc`: all of it (120 packages); or `fuzz`: Debian's clang with
-# libFuzzer; or `cncjs`: the controller of that sender, where npm is. Safe to run again at any time: it installs only
-# what is missing.
+# libFuzzer; or `cncjs`: the controller of that sender, where npm is. The set `web` has Pyodide as well, where npm is.
+# Safe to run again at any time: it installs only what is missing.
 # PYTHON selects the interpreter for the environment (default: python3).
 
 set -euo pipefail
@@ -61,6 +61,7 @@ for name in "$@"; do
         npm_sets+=(cncjs)
     else
         python_sets+=("$name")
+        [ "$name" != web ] || npm_sets+=(pyodide)
     fi
 done
 
@@ -127,12 +128,15 @@ missing_sets() {
 
 rs274_is_there() { [ -z "$rs274" ] || [ -x "$rs274/rs274" ]; }
 
+# What a set of npm is for has its package.json.
+npm_folder() { [ -d "tools/$1" ] && echo "tools/$1" || echo "tests/$1"; }
+
 # Without npm there is nothing to install with: its tests say so. The lock file is the key.
 missing_npm_sets() {
     local name
     command -v npm >/dev/null || return 0
     for name in "${npm_sets[@]}"; do
-        cmp -s "tests/$name/package-lock.json" ".venv/$name/installed.json" || echo "$name"
+        cmp -s "$(npm_folder "$name")/package-lock.json" ".venv/$name/installed.json" || echo "$name"
     done
 }
 
@@ -268,10 +272,11 @@ fi
 for name in $(missing_npm_sets); do
     step "Installing $name with npm"
     mkdir -p ".venv/$name"
-    cp "tests/$name/package.json" "tests/$name/package-lock.json" ".venv/$name"
+    from=$(npm_folder "$name")
+    cp "$from/package.json" "$from/package-lock.json" ".venv/$name"
     npm ci --prefix ".venv/$name" --ignore-scripts --no-audit --no-fund --silent || fail "npm could not install $name." \
         "Check the network and npm's own configuration (npm config list), then run 'make setup' again."
-    cp "tests/$name/package-lock.json" ".venv/$name/installed.json"
+    cp "$from/package-lock.json" ".venv/$name/installed.json"
 done
 
 step "Setup is complete."

@@ -45,27 +45,34 @@ static uint64_t slowest(const struct passo_path_planner *path, const struct pass
 	return velocity * velocity + 1;
 }
 
-static enum passo_plan_error add(struct passo_path_planner *path, const struct passo_path_move *move)
+void passo_path_rest_if_slow(const struct passo_path_planner *path, struct passo_path_item *item)
+{
+	item->rest = item->corner < slowest(path, item);
+	if (item->rest)
+		item->corner = 0;
+}
+
+/* Adds a line, or replaces the newest one, which has been taken off. */
+static enum passo_plan_error add(
+    struct passo_path_planner *path, const struct passo_path_move *move, bool instead)
 {
 	struct passo_path_item *item = passo_path_item(path, path->added);
 	struct passo_path_item made = {.output = move->output, .dwell = path->dwell, .rest = path->rest};
-	const struct passo_path_place before = path->at;
-	const enum passo_plan_error error = passo_path_measure(path, move, &made);
+	const enum passo_plan_error error = passo_path_measure(path, move, instead, &made);
 
 	if (error != PASSO_PLAN_OK || made.substeps == 0)
 		return error;
 	*item = made;
-	path->before = before;
 	path->begins = path->rest;
 	path->feed = move->feed;
 	path->wanted = item->feed;
 	path->merged = (struct passo_path_merged){.off = 0};
 	passo_path_pace_line(path, item);
 	passo_path_limit(path, path->added);
-	if (!item->rest)
-		item->rest = item->corner < slowest(path, item);
 	if (item->rest)
 		item->corner = item->dwell > 0 || is_first(path) ? passo_path_halt(item) : 0;
+	else
+		passo_path_rest_if_slow(path, item);
 	path->rest = false;
 	path->dwell = 0;
 	path->added++;
@@ -90,6 +97,18 @@ static bool is_open(const struct passo_path_planner *path, const struct passo_pa
 	    && newest(path)->output == move->output && path->feed == move->feed;
 }
 
+/* Whether the newest line goes straight on from one of another feed: that is where a corner behind it stays.
+ */
+static bool ends_straight(const struct passo_path_planner *path)
+{
+#ifdef PASSO_WITHOUT_ROUNDING
+	(void)path;
+	return false;
+#else
+	return passo_path_spans(path) && path->at.first + 1 != path->added;
+#endif
+}
+
 /* Whether a short line goes straight on from the newest one, which is too long to be held back. */
 static bool goes_on(const struct passo_path_planner *path, const struct passo_path_merged *merged)
 {
@@ -104,21 +123,20 @@ static bool merge(struct passo_path_planner *path, const struct passo_path_move 
 	if (!is_open(path, move))
 		return false;
 	const struct passo_path_merged merged = passo_path_off(path, move->target);
+	if (ends_straight(path) && merged.off > path->substeps_per_mm >> 10) /* 2^-26 mm, in UQ.16 substeps */
+		return false;
 	if (path->open ? merged.off >= path->tolerance : !goes_on(path, &merged))
 		return false;
-	const struct passo_path_place at = path->at;
 	const uint32_t dwell = path->dwell;
 
-	path->at = path->before;
 	path->added--;
 	path->rest = path->begins;
 	path->dwell = passo_path_item(path, path->added)->dwell;
-	if (add(path, move) == PASSO_PLAN_OK) {
+	if (add(path, move, true) == PASSO_PLAN_OK) {
 		path->merged = merged;
 		return true;
 	}
 	path->added++;
-	path->at = at;
 	path->rest = false;
 	path->dwell = dwell;
 	return false;
@@ -131,7 +149,7 @@ enum passo_plan_error passo_path_add(struct passo_path_planner *path, const stru
 	if (passo_path_room(path) == 0)
 		return PASSO_PLAN_PATH_FULL;
 	passo_path_close(path);
-	return add(path, move);
+	return add(path, move, false);
 }
 
 void passo_path_tolerance(struct passo_path_planner *path, uint64_t tolerance)
@@ -201,14 +219,11 @@ static uint64_t reach_over(const struct passo_path_item *item, uint64_t end, uin
 
 /* Highest square at the start of an item from which the path can come to rest. */
 static uint64_t reach_of(const struct passo_path_planner *path, uint32_t index,
-    const struct passo_path_item *item, const struct passo_path_item *next)
+    const struct passo_path_item *item, const struct passo_path_item *next, uint64_t sharp)
 {
 	const uint64_t end = end_square(item, next);
-	uint64_t behind = passo_path_flat(path, index + 1, index, false, end, true);
-
-	/* at the end of the newest line a sharp corner may follow, whose arc leaves no slope */
-	if (next == NULL && !item->last && !path->rest && passo_path_shape(path) == PASSO_SHAPE_LINEAR)
-		behind = passo_path_smaller((uint64_t)item->substeps << 31, path->deviation * SHARP << 16);
+	const uint64_t behind =
+	    passo_path_larger(passo_path_flat(path, index + 1, index, false, end, true), sharp);
 	/* its flat end is that of a square which it cannot exceed */
 	const uint64_t plain = reach_over(item, end, behind, behind);
 	const uint64_t before =
@@ -220,28 +235,58 @@ static uint64_t reach_of(const struct passo_path_planner *path, uint32_t index,
 	return path->anew ? reach : passo_path_larger(reach, passo_path_smaller(item->reach, item->corner));
 }
 
+/* At the end of the newest line a sharp corner may follow, whose arc leaves no slope over this length. */
+static uint64_t sharp_end(const struct passo_path_planner *path)
+{
+	const struct passo_path_item *item = newest(path);
+
+	if (item->last || path->rest || passo_path_shape(path) != PASSO_SHAPE_LINEAR)
+		return 0;
+#ifndef PASSO_WITHOUT_ROUNDING
+	if (path->at.first + 1 != path->added && passo_path_spans(path))
+		return passo_path_smaller(path->at.straight / 2, path->deviation * SHARP) << 16;
+#endif
+	return passo_path_smaller((uint64_t)item->substeps << 31, path->deviation * SHARP << 16);
+}
+
+/* Whether the limits of an item have changed. */
+static bool is_changed(const struct passo_path_planner *path, uint32_t index)
+{
+#ifdef PASSO_WITHOUT_ROUNDING
+	return path->anew || index + 1 == path->added;
+#else
+	return path->anew || index + 1 == path->added || index >= path->bent;
+#endif
+}
+
 /* Goes back from the newest line as long as anything changes. */
 void passo_path_look_back(struct passo_path_planner *path)
 {
 	uint32_t final = path->final;
+	uint64_t sharp = path->added > path->planned ? sharp_end(path) : 0;
 	const struct passo_path_item *next = NULL;
 	struct passo_path_item *item = passo_path_item(path, path->added);
 
 	for (uint32_t index = path->added; index-- > path->planned && index >= path->final;) {
 		item = (item == path->items ? item + path->capacity : item) - 1;
+		const uint64_t over = passo_path_smaller(sharp, (uint64_t)item->substeps << 31);
 		const uint64_t reach = passo_path_is_soft(path) ? passo_path_soft_reach(path, index)
-		                                                : reach_of(path, index, item, next);
+		                                                : reach_of(path, index, item, next, over);
 
 		if ((reach == item->corner || item->rest) && final < index)
 			final = index;
-		if (reach == item->reach && index + 1 < path->added && !path->anew)
+		if (reach == item->reach && over == 0 && !is_changed(path, index))
 			break;
+		sharp -= passo_path_smaller(sharp, (uint64_t)item->substeps << 32);
 		item->reach = reach;
 		next = item;
 	}
 	path->final = final;
 	path->waits = path->waits && !path->anew && path->unsettled >= path->final;
 	path->anew = false;
+#ifndef PASSO_WITHOUT_ROUNDING
+	path->bent = UINT32_MAX;
+#endif
 }
 
 bool passo_path_next_line(struct passo_path_planner *path, struct passo_line *line)

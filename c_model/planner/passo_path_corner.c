@@ -28,27 +28,33 @@ static struct passo_path_rounding rounding_of(uint64_t arc, uint64_t before, uin
 
 /* The halves of the lines beside a corner; where the rounding ends before the middle of a line, it belongs to
  * the corner alone. */
-static void bend_lines(const struct passo_path_planner *path, const int32_t *unit,
-    const struct passo_path_corner *corner, struct passo_path_item *item)
+static void bend_lines(struct passo_path_planner *path, const struct passo_path_meeting *meeting,
+    struct passo_path_corner *corner)
 {
 	const struct passo_path_rounding *rounding = &corner->rounding;
 	const uint64_t inverse = passo_divide(
 	    (struct passo_u128){1, 0}, passo_path_larger(rounding->before + rounding->behind, 1), NULL);
-	struct passo_path_item *last = passo_path_item(path, path->added - 1);
 	int64_t curvature[PASSO_AXES_MAX];
 
 	for (uint32_t axis = 0; axis < passo_path_rows(path); axis++) {
-		const int64_t turn = (int64_t)unit[axis] - path->at.direction[axis];
+		const int64_t turn = (int64_t)meeting->to[axis] - meeting->from[axis];
 		const int64_t size = (int64_t)passo_path_smaller(
 		    passo_mul_shift(passo_size64(turn), inverse, 30), PASSO_PATH_SQUARE_MAX / 2);
 
 		curvature[axis] = turn < 0 ? -size : size;
 	}
+#ifdef PASSO_WITHOUT_ROUNDING
+	struct passo_path_item *last = passo_path_item(path, meeting->index - 1);
+
 	if (corner->bends_before)
-		passo_path_bend(path, curvature, path->at.direction, 1, last);
+		passo_path_bend(path, curvature, meeting->from, 0, last);
 	passo_path_set_fall(last);
 	if (corner->bends_behind)
-		passo_path_bend(path, curvature, unit, 0, item);
+		passo_path_bend(path, curvature, meeting->to, 0, meeting->newest);
+#else
+	passo_path_spread(path, meeting, corner, false, rounding->before, curvature);
+	passo_path_spread(path, meeting, corner, true, rounding->behind, curvature);
+#endif
 }
 
 #ifndef PASSO_WITHOUT_ROUNDING
@@ -81,20 +87,26 @@ static void add_share(uint32_t lost, uint32_t needed, struct passo_path_share *s
 /* What the lines beside a lone corner, at their slopes, and its rounding have of the accelerations of the
  * axes. Those along the path and across it add up where they are the way that the axis turns. Where one of
  * the lines is short, the other one leaves all that is needed there. */
-static void find_rounding(const struct passo_path_planner *path, const int32_t *unit,
+static void find_rounding(const struct passo_path_planner *path, const struct passo_path_meeting *meeting,
     const struct passo_path_corner *corner, uint64_t square, struct passo_path_item *item)
 {
-	const uint64_t slope = passo_path_item(path, path->added - 1)->slope;
+	const uint64_t slope = passo_path_item(path, meeting->index - 1)->slope;
 	const struct passo_path_rounding *rounding = &corner->rounding;
-	const bool before = !corner->bends_before, behind = !corner->bends_behind;
-	const uint32_t sides = before && behind ? 1 : 2;
+	const bool before = !corner->bends_before || corner->point[0].index > 0;
+	const bool behind = !corner->bends_behind || corner->point[1].index > 0;
+	const bool lone = passo_path_smaller(rounding->before, rounding->behind) >= corner->arc;
+	const uint32_t sides = before && behind && lone ? 1 : 2;
 
+	for (unsigned i = 0; i < 2 * PASSO_PATH_SHARES; i++)
+		item->lone[i / PASSO_PATH_SHARES][i % PASSO_PATH_SHARES] = (struct passo_path_share){0, 0};
+	item->valley = false;
+	item->turn = 0;
 	if (!before && !behind)
 		return;
 	item->valley = before && behind;
-	item->turn = (uint32_t)((before ? rounding->before : rounding->behind) >> 16);
+	item->turn = (uint32_t)((corner->bends_before ? rounding->behind : rounding->before) >> 16);
 	for (uint32_t axis = 0; axis < passo_path_rows(path); axis++) {
-		const int64_t turn = (int64_t)unit[axis] - path->at.direction[axis];
+		const int64_t turn = (int64_t)meeting->to[axis] - meeting->from[axis];
 		const uint64_t change = passo_size64(turn);
 		if (change == 0)
 			continue;
@@ -102,8 +114,8 @@ static void find_rounding(const struct passo_path_planner *path, const int32_t *
 		const uint32_t needed = (uint32_t)passo_mul_div(
 		    passo_path_smaller(square, bend), sides * INT16_MAX, passo_path_larger(bend, 1));
 		const int32_t way = turn < 0 ? -1 : 1;
-		const int32_t first = before ? way * part_of(path, slope, path->at.direction, axis) : 0;
-		const int32_t second = behind ? way * part_of(path, item->slope, unit, axis) : 0;
+		const int32_t first = before ? way * part_of(path, slope, meeting->from, axis) : 0;
+		const int32_t second = behind ? way * part_of(path, item->slope, meeting->to, axis) : 0;
 		const uint32_t lost = sides * (passo_path_size32(first) + passo_path_size32(second));
 
 		/* down before it and up behind it, the axis has the difference the way that it turns */
@@ -137,41 +149,131 @@ uint64_t passo_path_corner_square(
 	return square;
 }
 
+bool passo_path_find_turn(const struct passo_path_planner *path, const int32_t *from, const int32_t *to,
+    struct passo_path_corner *corner)
+{
+	corner->turn = 0;
+	for (uint32_t axis = 0; axis < passo_path_rows(path); axis++) {
+		const uint32_t change = (uint32_t)passo_size64((int64_t)to[axis] - from[axis]);
+
+		corner->change[axis] = change;
+		corner->turn += axis < path->machine.axes ? (uint64_t)change * change : 0;
+	}
+	return corner->turn >= 4;
+}
+
+static bool is_whole(const struct passo_path_corner *corner)
+{
+#ifdef PASSO_WITHOUT_ROUNDING
+	(void)corner;
+	return false;
+#else
+	return corner->whole;
+#endif
+}
+
+/* How far the rounding reaches over lines that go straight on. */
+static void span_lines(struct passo_path_planner *path, const struct passo_path_meeting *meeting,
+    struct passo_path_corner *corner, struct passo_path_item *item)
+{
+#ifdef PASSO_WITHOUT_ROUNDING
+	(void)path, (void)meeting, (void)corner, (void)item;
+#else
+	struct passo_path_rounding *rounding = &corner->rounding;
+
+	corner->point[0].index = corner->point[1].index = 0;
+	corner->whole = false;
+	if (passo_path_spans(path)) {
+		passo_path_unbend(path, meeting, false, rounding->before);
+		passo_path_unbend(path, meeting, true, rounding->behind);
+		corner->whole = passo_path_smaller(rounding->before, rounding->behind) >= corner->arc
+		             && passo_path_is_known(path, meeting, rounding->before);
+	}
+	item->whole = corner->whole;
+	item->point = PASSO_PATH_CORNER;
+	item->away = 0;
+	for (unsigned i = 0; passo_path_spans(path) && !corner->whole && i < 2; i++) {
+		rounding->before = passo_path_spread(path, meeting, corner, false, rounding->before, NULL);
+		rounding->behind = passo_path_spread(path, meeting, corner, true, rounding->behind, NULL);
+		if (i == 0)
+			*rounding = rounding_of(corner->arc, 2 * rounding->before, 2 * rounding->behind);
+	}
+#endif
+}
+
+uint64_t passo_path_round(struct passo_path_planner *path, const struct passo_path_meeting *meeting,
+    struct passo_path_corner *corner, struct passo_path_item *item)
+{
+	struct passo_path_rounding *rounding = &corner->rounding;
+
+	*rounding = rounding_of(corner->arc, meeting->before, meeting->behind);
+	span_lines(path, meeting, corner, item);
+	const uint64_t both = rounding->before + rounding->behind;
+	corner->over = passo_path_smaller(corner->arc, both) << (PASSO_PATH_UNIT_BITS - 16);
+	corner->bends_before = !is_whole(corner) && rounding->before >= meeting->last / 2;
+	corner->bends_behind = !is_whole(corner) && rounding->behind >= meeting->next / 2;
+	if (!is_whole(corner))
+		bend_lines(path, meeting, corner);
+	item->arc = 0;
+	if (both < corner->arc)
+		item->arc = (corner->bends_before ? PASSO_PATH_ARC_BEFORE : 0)
+		          | (corner->bends_behind ? PASSO_PATH_ARC_BEHIND : 0);
+	if (passo_path_shape(path) != PASSO_SHAPE_LINEAR)
+		return passo_path_shaped_corner(path, corner, meeting->to, item);
+	const uint64_t square = passo_path_corner_square(path, corner, NULL);
+#ifndef PASSO_WITHOUT_ROUNDING
+	if (passo_path_is_rounded(path))
+		find_rounding(path, meeting, corner, square, item);
+	item->bend = square;
+	passo_path_set_points(path, meeting, corner, item);
+#endif
+	return square;
+}
+
+/* The same direction on both sides, so no curvature. */
+static void go_on(struct passo_path_planner *path, const int32_t *unit, struct passo_path_item *item)
+{
+	static const int64_t STRAIGHT[PASSO_AXES_MAX];
+	struct passo_path_item *last = passo_path_item(path, path->added - 1);
+
+	item->arc = PASSO_PATH_ARC_BEFORE | PASSO_PATH_ARC_BEHIND;
+	passo_path_begin_straight(path);
+	if (passo_path_is_rounded(path)) {
+		passo_path_bend(path, STRAIGHT, path->at.direction, 1, last);
+		passo_path_bend(path, STRAIGHT, unit, 0, item);
+	}
+	passo_path_set_fall(last);
+}
+
 uint64_t passo_path_limit_corner(
     struct passo_path_planner *path, const int32_t *unit, uint64_t length, struct passo_path_item *item)
 {
-	struct passo_path_corner corner = {.turn = 0};
+	struct passo_path_corner corner;
 
 	passo_path_restore_start(passo_path_item(path, path->added - 1), &path->at);
-	for (uint32_t axis = 0; axis < passo_path_rows(path); axis++) {
-		const uint32_t change =
-		    (uint32_t)passo_size64((int64_t)unit[axis] - path->at.direction[axis]);
+	if (!passo_path_find_turn(path, path->at.direction, unit, &corner)
+	    || passo_path_goes_on(path, corner.turn, length)) {
+		go_on(path, unit, item);
+		item->bend = PASSO_PATH_SQUARE_MAX;
+		passo_path_prolong(path, item, length);
+		return item->bend;
+	}
+	passo_path_end_straight(path);
+	corner.arc = half_arc(path, corner.turn);
+	const struct passo_path_meeting meeting = {
+	    .index = path->added,
+	    .from = path->at.direction,
+	    .to = unit,
+	    .before = passo_path_straight(path),
+	    .behind = length,
+	    .last = path->at.length,
+	    .next = length,
+	    .newest = item,
+	    .newest_length = length,
+	    .end = path->added,
+	};
+	const uint64_t square = passo_path_round(path, &meeting, &corner, item);
 
-		corner.change[axis] = change;
-		corner.turn += axis < path->machine.axes ? (uint64_t)change * change : 0;
-	}
-	if (corner.turn < 4) {
-		item->arc = PASSO_PATH_ARC_BEFORE | PASSO_PATH_ARC_BEHIND;
-		passo_path_begin_straight(path);
-		bend_lines(path, unit, &corner, item);
-		return PASSO_PATH_SQUARE_MAX;
-	}
-	const uint64_t arc = half_arc(path, corner.turn);
-	corner.rounding = rounding_of(arc, path->at.length, length);
-	const uint64_t both = corner.rounding.before + corner.rounding.behind;
-	corner.over = passo_path_smaller(arc, both) << (PASSO_PATH_UNIT_BITS - 16);
-	corner.bends_before = corner.rounding.before >= path->at.length / 2;
-	corner.bends_behind = corner.rounding.behind >= length / 2;
-	bend_lines(path, unit, &corner, item);
-	if (both < arc)
-		item->arc = (corner.bends_before ? PASSO_PATH_ARC_BEFORE : 0)
-		          | (corner.bends_behind ? PASSO_PATH_ARC_BEHIND : 0);
-	if (passo_path_shape(path) != PASSO_SHAPE_LINEAR)
-		return passo_path_shaped_corner(path, &corner, unit, item);
-	const uint64_t square = passo_path_corner_square(path, &corner, NULL);
-#ifndef PASSO_WITHOUT_ROUNDING
-	if (passo_path_is_rounded(path))
-		find_rounding(path, unit, &corner, square, item);
-#endif
+	passo_path_begin(path, length, &meeting, corner.arc);
 	return square;
 }

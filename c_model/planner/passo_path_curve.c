@@ -46,6 +46,13 @@ void passo_path_add_slope(struct passo_path_item *item, uint32_t axis, uint32_t 
 		item->curve.slope[axis] = packed(slope);
 }
 
+void passo_path_straighten(struct passo_path_item *item, unsigned half)
+{
+	for (uint32_t axis = 0; axis < PASSO_PATH_AXES_MAX; axis++)
+		item->curve.bend[half][axis] = 0;
+	item->curve.helps[half] = item->curve.hinders[half] = 0;
+}
+
 void passo_path_bend(const struct passo_path_planner *path, const int64_t *curvature, const int32_t *unit,
     unsigned half, struct passo_path_item *item)
 {

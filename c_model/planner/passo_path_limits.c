@@ -98,7 +98,8 @@ struct passo_path_merged passo_path_off(const struct passo_path_planner *path, c
 }
 
 /* Steps of each motor, by rounding its target; returns the most. */
-static uint64_t find_steps(const struct passo_path_planner *path, const int64_t *target, int64_t *steps)
+static uint64_t find_steps(const struct passo_path_planner *path, const struct passo_path_place *from,
+    const int64_t *target, int64_t *steps)
 {
 	uint64_t most = 0;
 
@@ -109,7 +110,7 @@ static uint64_t find_steps(const struct passo_path_planner *path, const int64_t 
 		const int64_t rounded = (int64_t)(product.high + (product.low >> 63)); /* below 2^63 */
 
 		steps[motor] = place < 0 ? -rounded : rounded;
-		most = passo_path_larger(most, passo_size64(steps[motor] - path->at.steps[motor]));
+		most = passo_path_larger(most, passo_size64(steps[motor] - from->steps[motor]));
 	}
 	return most;
 }
@@ -175,9 +176,10 @@ static void step_to(
 	path->at.steps[motor] = steps;
 }
 
-enum passo_plan_error passo_path_measure(
-    struct passo_path_planner *path, const struct passo_path_move *move, struct passo_path_item *item)
+enum passo_plan_error passo_path_measure(struct passo_path_planner *path, const struct passo_path_move *move,
+    bool instead, struct passo_path_item *item)
 {
+	const struct passo_path_place *from = instead ? &path->before : &path->at;
 	int32_t unit[PASSO_AXES_MAX];
 	int64_t steps[PASSO_AXES_MAX];
 	uint64_t length = 0;
@@ -190,12 +192,12 @@ enum passo_plan_error passo_path_measure(
 		    || move->target[axis] <= -PASSO_PATH_TARGET_MAX)
 			return PASSO_PLAN_TOO_FAR;
 	}
-	if (!find_direction(path, path->at.target, move->target, unit, &length))
+	if (!find_direction(path, from->target, move->target, unit, &length))
 		return PASSO_PLAN_OK;
-	const uint64_t most = find_steps(path, move->target, steps);
+	const uint64_t most = find_steps(path, from, move->target, steps);
 	if (length >> 16 > PASSO_SUBSTEPS_MAX)
 		return PASSO_PLAN_TOO_LONG;
-	const int64_t whole = path->at.carry + (int64_t)length + (1 << 15);
+	const int64_t whole = from->carry + (int64_t)length + (1 << 15);
 	uint64_t substeps = whole > 0 ? (uint64_t)whole >> 16 : 0;
 	if (substeps < 1 && most == 0)
 		return PASSO_PLAN_OK;
@@ -204,13 +206,19 @@ enum passo_plan_error passo_path_measure(
 	if (substeps > PASSO_SUBSTEPS_MAX)
 		return PASSO_PLAN_TOO_LONG;
 
-	limit_line(path, unit, move->feed, item);
-	if (path->rest)
-		passo_path_begin_straight(path);
+	if (instead)
+		path->at = path->before;
 	else
-		item->bend = passo_path_limit_corner(path, unit, length, item);
-	passo_path_keep_start(item, &path->at);
+		path->before = path->at;
 	item->substeps = (uint32_t)substeps;
+	limit_line(path, unit, move->feed, item);
+	if (path->rest) {
+		passo_path_begin_straight(path);
+		passo_path_begin(path, length, NULL, 0);
+	} else {
+		item->bend = passo_path_limit_corner(path, unit, length, item);
+	}
+	passo_path_keep_start(item, &path->at);
 	passo_path_set_fall(item);
 	path->at.carry =
 	    stretched ? 0 : (int32_t)(path->at.carry + (int64_t)length - (int64_t)(substeps << 16));

@@ -6,6 +6,16 @@
 #define OVERRIDE_BITS 16u
 #define RAPID_MIN (PASSO_PATH_RAPID_FULL / 100u)
 
+/* Highest square at its start, by geometry. */
+static uint64_t bend_of(const struct passo_path_item *item)
+{
+#ifndef PASSO_WITHOUT_ROUNDING
+	if (item->point != PASSO_PATH_CORNER)
+		return PASSO_PATH_SQUARE_MAX;
+#endif
+	return item->bend;
+}
+
 void passo_path_limit(struct passo_path_planner *path, uint32_t index)
 {
 	struct passo_path_item *item = passo_path_item(path, index);
@@ -17,7 +27,7 @@ void passo_path_limit(struct passo_path_planner *path, uint32_t index)
 	    limit, passo_mul_shift(base, (uint64_t) override * override, 2 * OVERRIDE_BITS));
 	if (item->rest)
 		return;
-	item->corner = passo_path_smaller(item->bend, item->top);
+	item->corner = passo_path_smaller(bend_of(item), item->top);
 	if (index == path->planned)
 		return;
 	struct passo_path_item *before = passo_path_item(path, index - 1);
@@ -26,7 +36,8 @@ void passo_path_limit(struct passo_path_planner *path, uint32_t index)
 	/* an arc is limited along its lines, not only at its corners; by their bends, not by the feeds that
 	 * meet there */
 	if ((before->arc & PASSO_PATH_ARC_BEHIND) > 0 && (item->arc & PASSO_PATH_ARC_BEFORE) > 0)
-		before->top = passo_path_smaller(before->top, passo_path_larger(before->bend, item->bend));
+		before->top =
+		    passo_path_smaller(before->top, passo_path_larger(bend_of(before), bend_of(item)));
 }
 
 /* Replans the lines that no ramp has passed. */

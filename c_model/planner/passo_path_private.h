@@ -269,7 +269,8 @@ void passo_path_set_fall(struct passo_path_item *item);
  * the line. */
 uint64_t passo_path_fall(const struct passo_path_item *item, uint64_t end);
 
-/* Adds a curvature, Q15.48 per substep, to a half of an item with this unit vector. */
+/* Adds a curvature, Q15.48 per substep, to a half of an item with this unit vector; and takes all of it. */
+void passo_path_straighten(struct passo_path_item *item, unsigned half);
 void passo_path_bend(const struct passo_path_planner *path, const int64_t *curvature, const int32_t *unit,
     unsigned half, struct passo_path_item *item);
 
@@ -282,10 +283,10 @@ uint64_t passo_path_change(const struct passo_path_planner *path, uint64_t slope
 /* Whether the map of motors has an inverse, room, and one scale for the axes of each motor. */
 bool passo_path_has_motors(const struct passo_path_settings *settings);
 
-/* Fills in the geometry and the limits of a line, and remembers it as the last one; *substeps is 0 if it is
- * too short to be a line. */
-enum passo_plan_error passo_path_measure(
-    struct passo_path_planner *path, const struct passo_path_move *move, struct passo_path_item *item);
+/* Fills in the geometry and the limits of a line, and remembers it as the last one, or `instead` of that;
+ * *substeps is 0 if it is too short to be a line. After an error, or then, nothing has changed. */
+enum passo_plan_error passo_path_measure(struct passo_path_planner *path, const struct passo_path_move *move,
+    bool instead, struct passo_path_item *item);
 
 /* Where the direction changes at a corner: so long before it and behind it, UQ32.16 substeps; no farther than
  * the middle of the lines, and not on one side alone. */
@@ -296,10 +297,112 @@ struct passo_path_rounding {
 struct passo_path_corner {
 	uint32_t change[PASSO_AXES_MAX]; /* of the direction, by rows, Q1.30 */
 	uint64_t turn;                   /* the sum of their squares, of the axes */
+	uint64_t arc;                    /* what the rounding may have on either side, UQ32.16 substeps */
 	struct passo_path_rounding rounding;
 	uint64_t over;                   /* UQ.30 substeps, in which it turns at a constant speed */
 	bool bends_before, bends_behind; /* the lines are parts of a curve */
+#ifndef PASSO_WITHOUT_ROUNDING
+	bool whole; /* it is lone: rounded as far as it needs, maybe over several lines */
+	struct passo_path_part_covered { /* otherwise, on each side, the last line where it covers a small
+	                                    part: */
+		uint32_t index;          /* it begins, or ends, at the start of this item; 0: there is none */
+		uint64_t left;           /* that part, UQ32.16 substeps */
+	} point[2];
+#endif
 };
+
+/* What meets at the corner at the start of an item. Lengths are UQ32.16 substeps. */
+struct passo_path_meeting {
+	uint32_t index;                 /* this item */
+	const int32_t *from, *to;       /* unit vectors */
+	uint64_t before, behind;        /* the straights */
+	uint64_t last, next;            /* the lines beside the corner */
+	struct passo_path_item *newest; /* that is being added */
+	uint64_t newest_length;
+	uint32_t end; /* number of the last item behind the corner */
+};
+
+/* Finds the change of direction from one unit vector to another; false: it goes straight on. */
+bool passo_path_find_turn(const struct passo_path_planner *path, const int32_t *from, const int32_t *to,
+    struct passo_path_corner *corner);
+
+/* Highest square at a corner by its rounding, which bends the lines beside it. */
+uint64_t passo_path_round(struct passo_path_planner *path, const struct passo_path_meeting *meeting,
+    struct passo_path_corner *corner, struct passo_path_item *item);
+
+/* Whether a rounding spans lines of several feeds that go straight on. */
+static inline bool passo_path_spans(const struct passo_path_planner *path)
+{
+	return passo_path_is_rounded(path) && passo_path_shape(path) == PASSO_SHAPE_LINEAR;
+}
+
+#ifdef PASSO_WITHOUT_ROUNDING
+static inline uint64_t passo_path_straight(const struct passo_path_planner *path)
+{
+	return path->at.length;
+}
+
+static inline void passo_path_end_straight(struct passo_path_planner *path)
+{
+	(void)path;
+}
+
+static inline void passo_path_prolong(
+    struct passo_path_planner *path, struct passo_path_item *newest, uint64_t length)
+{
+	(void)path, (void)newest, (void)length;
+}
+
+static inline void passo_path_begin(
+    struct passo_path_planner *path, uint64_t length, const struct passo_path_meeting *meeting, uint64_t arc)
+{
+	(void)path, (void)length, (void)meeting, (void)arc;
+}
+
+static inline bool passo_path_goes_on(const struct passo_path_planner *path, uint64_t turn, uint64_t length)
+{
+	(void)path, (void)turn, (void)length;
+	return false;
+}
+#else
+/* Up to where a rounding covers the lines on one side of a corner, in halves, if it may reach so far; and
+ * bends them by a curvature, unless that is null. */
+uint64_t passo_path_spread(struct passo_path_planner *path, const struct passo_path_meeting *meeting,
+    struct passo_path_corner *corner, bool behind, uint64_t reach, const int64_t *curvature);
+
+/* Takes the curvature of a corner off the lines on one side of it, so far. */
+void passo_path_unbend(
+    struct passo_path_planner *path, const struct passo_path_meeting *meeting, bool behind, uint64_t reach);
+
+/* Whether the lines before a corner are known that far. */
+bool passo_path_is_known(
+    const struct passo_path_planner *path, const struct passo_path_meeting *meeting, uint64_t reach);
+
+/* Lines that a rounding covers without bending them are passed as the one beside the corner is: `item`. */
+void passo_path_set_points(struct passo_path_planner *path, const struct passo_path_meeting *meeting,
+    const struct passo_path_corner *corner, const struct passo_path_item *item);
+
+/* Length of the straight that the last line ends, UQ32.16 substeps. */
+static inline uint64_t passo_path_straight(const struct passo_path_planner *path)
+{
+	return passo_path_spans(path) ? path->at.straight : path->at.length;
+}
+
+/* The straight that the last line ends is followed by a corner; it goes on with the item that is being
+ * added. */
+void passo_path_end_straight(struct passo_path_planner *path);
+void passo_path_prolong(struct passo_path_planner *path, struct passo_path_item *newest, uint64_t length);
+
+/* A new straight begins with the item that is being added, at a corner, or, where that is null, at rest. */
+void passo_path_begin(
+    struct passo_path_planner *path, uint64_t length, const struct passo_path_meeting *meeting, uint64_t arc);
+
+/* Whether a turn (UQ2.60, squared) beside a line of a length is that of targets in 2^-32 mm alone. */
+bool passo_path_goes_on(const struct passo_path_planner *path, uint64_t turn, uint64_t length);
+#endif
+
+/* The path rests at the start of an item, if it is hardly faster there. */
+void passo_path_rest_if_slow(const struct passo_path_planner *path, struct passo_path_item *item);
 
 /* Highest square at a corner by what is left of the acceleration of each axis; null: all of it. */
 uint64_t passo_path_corner_square(

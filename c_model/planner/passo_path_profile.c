@@ -37,18 +37,31 @@ static unsigned put(struct passo_path_part *parts, unsigned count, enum passo_pa
  * not come down any further. A ramp that comes down to there ends within a tick. */
 static bool is_valley(const struct passo_path_item *item, uint64_t square)
 {
-	return item->valley && item->reach == item->corner && square + square / VALLEY >= item->reach;
+	const uint64_t above = square + square / VALLEY;
+
+	if (item->point != PASSO_PATH_CORNER)
+		return item->valley && above >= item->bend;
+	return item->valley && item->reach == item->corner && above >= item->reach;
+}
+
+/* UQ32.32 substeps. */
+static uint64_t away_of(const struct passo_path_item *item)
+{
+	return (uint64_t)item->turn * item->away << 16;
 }
 
 uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, uint32_t line, bool rises,
     uint64_t square, bool valley)
 {
 	const struct passo_path_item *item = passo_path_item(path, index);
+	const uint32_t length = passo_path_item(path, line)->substeps;
 
 	if (index >= path->added || item->rest || item->turn == 0
 	    || passo_path_shape(path) != PASSO_SHAPE_LINEAR)
 		return 0;
-	if (passo_path_item(path, line)->substeps / 2 < item->turn) /* the curve of a short line has it */
+	if (item->point == (line == index ? PASSO_PATH_BEFORE : PASSO_PATH_BEHIND))
+		return 0;
+	if (length / 2 < item->turn && !item->whole) /* the curve of a short line has it */
 		return 0;
 	if (valley && is_valley(item, square))
 		return 0;
@@ -66,7 +79,14 @@ uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, 
 		if (left < lost)
 			flat = passo_path_larger(flat, ((uint64_t)item->turn << 32) / lost * (lost - left));
 	}
-	return flat;
+	const uint64_t away = away_of(item);
+	return flat > away ? passo_path_smaller(flat - away, (uint64_t)length << 32) : 0;
+}
+
+/* Length beside the start of an item over which a corner there, or farther away, is rounded. */
+static uint64_t turn_of(const struct passo_path_item *item)
+{
+	return ((uint64_t)item->turn << 32) - away_of(item);
 }
 #endif
 
@@ -178,7 +198,7 @@ static bool falls(const struct passo_path_part *parts, unsigned count, uint64_t 
 static bool comes_down(const struct passo_path_item *next, uint64_t left, uint64_t square,
     const struct passo_path_part *parts, unsigned count)
 {
-	const uint64_t turn = (uint64_t)next->turn << 32;
+	const uint64_t turn = turn_of(next);
 	uint64_t length = 0;
 
 	if (left <= turn) /* is within it */
@@ -261,9 +281,9 @@ unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index,
 	const uint64_t corner = passed > 0 ? passo_path_passing(path, square) : square;
 	const uint64_t begun = passo_path_flat(path, index, index, true, corner, true);
 	const uint64_t ended = passo_path_flat(path, index + 1, index, false, end, true);
-	const uint64_t rising = spread(begun, (uint64_t)item->turn << 32);
+	const uint64_t rising = spread(begun, turn_of(item));
 	const uint64_t over = rising > passed ? rising - passed : 0;
-	const uint64_t falling = spread(ended, (uint64_t)next->turn << 32);
+	const uint64_t falling = spread(ended, turn_of(next));
 	uint64_t before = share_of(begun, rising, over);
 	uint64_t behind = share_of(ended, falling, left);
 	unsigned count = all_parts(path, index, left, before, behind, square, end, level, parts);

@@ -59,6 +59,10 @@ struct passo_path_share {
 };
 
 #define PASSO_PATH_SHARES 2u
+
+/* The start of a line is a corner; or it goes straight on, and a corner behind it, or before it, is rounded
+ * to beyond it: it has `bend` and `turn` of that. */
+enum passo_path_point { PASSO_PATH_CORNER, PASSO_PATH_BEFORE, PASSO_PATH_BEHIND };
 #endif
 
 /* A line of the path, private. Squares are those of velocities, UQ0.64 (substeps per clock)^2. */
@@ -82,6 +86,13 @@ struct passo_path_item {
 	uint8_t arc;        /* the corner at its start is a part of an arc with half the line before (bit 0),
 	                       and with half of this one (bit 1) */
 	bool rapid;         /* its feed is PASSO_PATH_RAPID */
+#ifndef PASSO_WITHOUT_ROUNDING
+	uint8_t begun
+	    : 2; /* halves, bit by bit, with the curvature of the corner at the start of their straight */
+	uint8_t point : 2; /* enum passo_path_point */
+	bool whole : 1;    /* the corner is lone, and its rounding may span several lines */
+	uint16_t away;     /* of a point: 65,536ths of `turn` that are between it and the corner */
+#endif
 #ifndef PASSO_WITHOUT_ROUNDING
 	uint32_t turn; /* substeps on either side over which a lone corner at its start may be rounded */
 	/* of a path that falls, or rises: of the axis with most of both there, and of that which lost most */
@@ -122,6 +133,16 @@ struct passo_path_place {
 	int32_t half_turn[PASSO_PATH_AXES_MAX]; /* of the change of direction at that corner, Q1.30 */
 	uint64_t turn, over;                    /* its size, and in which length it turns, UQ.30 substeps */
 	uint32_t turns; /* corners of this curve, to one side; 0: the line is in none */
+#endif
+#ifndef PASSO_WITHOUT_ROUNDING
+	/* The straight that the last line ends, of lines of several feeds, and the corner that it begins
+	 * with. */
+	uint64_t straight;                 /* its length, UQ32.16 substeps */
+	uint32_t first;                    /* the item that it begins with */
+	bool cornered;                     /* it begins with a corner, before which there is: */
+	int32_t came[PASSO_PATH_AXES_MAX]; /* this unit vector */
+	uint64_t came_straight, came_last; /* a straight, and the line at its end */
+	uint64_t arc;                      /* what the corner can have of either */
 #endif
 	int32_t carry;        /* Q16: substeps that rounding has withheld from the lines so far */
 	uint32_t line_credit; /* clocks that the last lines have left, see passo_path_pace.c */
@@ -164,7 +185,12 @@ struct passo_path_planner {
 	int64_t offset;    /* Q31.32 substeps into item `planned` */
 	uint64_t velocity; /* UQ0.48 substeps per clock */
 #ifndef PASSO_WITHOUT_ROUNDING
-	uint64_t passing; /* the square at which they pass the start of item `planned` */
+	uint64_t passing;    /* the square at which they pass the start of item `planned` */
+	uint64_t rounded;    /* the corner before a straight is rounded for this length of it; */
+	uint32_t rounded_at; /* this item begins it */
+	uint32_t point[2];   /* of the items within the rounding of a corner the first and the last one; */
+	uint32_t pointed;    /* it is that at the start of this item */
+	uint32_t bent;       /* what is before this item is as it was when `reach` was found */
 #endif
 	bool at_rest;
 	bool started;    /* the dwell before the item is over */

@@ -14,6 +14,7 @@
 
 #include "hal.h"
 #include "passo.h"
+#include "passo_encoder.h"
 #include "passo_inputs.h"
 #include "passo_linux.h"
 #include "passo_linux_private.h"
@@ -35,7 +36,9 @@ RTAPI_MP_INT(speed_hz, "of SCLK; 0: 4 MHz");
 static int clock_hz = 0;
 RTAPI_MP_INT(clock_hz, "of a core that does not tell its clock");
 static int buffer = 0;
-RTAPI_MP_INT(buffer, "periods by which the thread may be late without effect; 0: 5");
+RTAPI_MP_INT(buffer, "periods by which the thread may be late without effect; 0: 2");
+static char *encoders = "";
+RTAPI_MP_STRING(encoders, "those of the core that have pins: encoders=0,3");
 static int watchdog_ms = 500;
 RTAPI_MP_INT(watchdog_ms, "after which a core with inputs stops without a host; 0: never");
 
@@ -43,32 +46,53 @@ RTAPI_MP_INT(watchdog_ms, "after which a core with inputs stops without a host; 
 #define PREFIX PASSO_NAME ".0."
 #define ONE 4294967296.0 /* 2^32 */
 #define NS 1e-9
+#define US 1e-6
 #define MS 1000u  /* microseconds; also nanoseconds of a microsecond */
 #define GROUPS 4u /* inputs of an axis: limits low and high, home, alarm */
 #define INPUTS_MAX (GROUPS * PASSO_AXES_MAX + 1u)
 #define OUTPUTS 8u
 #define INPUT_WORDS 5u /* from INPUT_LEVELS to TRIGGER_STATE */
 #define BYTE 8u
+#define WORD_BITS 32u
 #define EXIT_WAITS 2000u
+#define SHARE 5u /* of a period that the wire may be busy: a fifth */
+#define TURNS_MAX 4u
+#define LOOK_WORDS 0.2 /* a read of the state, in a period */
+#define PAST 16u       /* reads of the encoders from which their speed is computed */
+#define COMMA ','
 
 struct stepgen {
 	hal_float_t *command, *feedback, *velocity;
 	hal_s32_t *counts;
-	hal_bit_t *enable;
-	hal_float_t scale, maxvel, maxaccel;
+	hal_bit_t *enable, *index_enable;
+	hal_float_t scale, maxvel, maxaccel, stopaccel;
 	hal_u32_t steplen, stepspace, dirsetup, dirhold;
 	hal_bit_t step_invert, dir_invert, enable_invert, home_invert, limit_invert, alarm_invert;
 	int32_t before; /* counts */
+	double origin;  /* steps of the core where the position is 0 */
+};
+
+struct encoder {
+	bool used;
+	hal_s32_t *count, *raw;
+	hal_float_t *position, *velocity;
+	hal_bit_t *index_enable, *reset;
+	hal_float_t scale;
+	hal_bit_t index_invert, index_mask;
+	int32_t zero, before[PAST]; /* raw counts of the reads before */
+	bool waits;                 /* for an index after the number `indexes` */
+	uint8_t indexes;
 };
 
 struct pins {
 	struct stepgen stepgen[PASSO_AXES_MAX];
+	struct encoder encoder[PASSO_AXES_MAX];
 	hal_bit_t *input[INPUTS_MAX], *input_not[INPUTS_MAX];
 	hal_bit_t *output[OUTPUTS];
 	hal_float_t *power;
 	hal_bit_t *has_bit, *fault;
 	hal_s32_t *state, *cause, *depth;
-	hal_u32_t *lag, *slowed, *frames, *retries;
+	hal_u32_t *lag, *slowed, *frames, *retries, *words;
 	hal_float_t *trim;
 };
 
@@ -85,6 +109,11 @@ static enum phase phase;
 static bool drives_due; /* the drives are to be switched off, when at rest */
 static long period_ns;
 static unsigned inputs; /* of the core; 0: none */
+static uint8_t first_encoder, last_encoder;
+static bool has_encoders;
+static unsigned turns = 1; /* calls in which positions and inputs are read once: the wire is slow */
+static unsigned turn;      /* that of this call; the positions have the first one */
+static uint32_t read_at[PAST], reads; /* microseconds, of the encoders; their number */
 static bool outputs;
 /* A call may take longer than HAL waits before it unloads the component. */
 static atomic_bool leaving;
@@ -128,8 +157,12 @@ static void tell_problem(void)
 		TELL("stepgen.%02u.maxvel is too low: set it to the MAX_VELOCITY of the joint\n", axis);
 		break;
 	case PASSO_SERVO_ACCELERATION:
-		TELL("stepgen.%02u.maxaccel is too low: set it to twice the MAX_ACCELERATION of the joint\n",
+		TELL("stepgen.%02u.maxaccel is too low: set it to the MAX_ACCELERATION of the joint, or "
+		     "more\n",
 		    axis);
+		break;
+	case PASSO_SERVO_STOP:
+		TELL("stepgen.%02u.stopaccel is too low: set it to what the axis bears\n", axis);
 		break;
 	case PASSO_SERVO_PINS:
 		TELL("stepgen.%02u.maxvel needs more steps than steplen and stepspace allow: lower one of "
@@ -137,8 +170,8 @@ static void tell_problem(void)
 		    axis);
 		break;
 	default:
-		TELL("to stop from maxvel within maxaccel takes %u periods, the core has %u lines: raise "
-		     "maxaccel\n",
+		TELL("to stop from maxvel within stopaccel takes %u periods, the core has %u lines: raise "
+		     "stopaccel\n",
 		    servo.stop, servo.places);
 	}
 	set_fault();
@@ -169,8 +202,12 @@ static bool check_axis(int axis)
 		TELL("stepgen.%02d.maxvel is %g: set it to the MAX_VELOCITY of the joint\n", axis,
 		    own->maxvel);
 	} else if (!isfinite(own->maxaccel) || own->maxaccel <= 0 || own->maxaccel * own->scale > INT32_MAX) {
-		TELL("stepgen.%02d.maxaccel is %g: set it to twice the MAX_ACCELERATION of the joint\n", axis,
-		    own->maxaccel);
+		TELL("stepgen.%02d.maxaccel is %g: set it to the MAX_ACCELERATION of the joint, or more\n",
+		    axis, own->maxaccel);
+	} else if (!isfinite(own->stopaccel) || own->stopaccel < 0
+	           || own->stopaccel * own->scale > INT32_MAX) {
+		TELL("stepgen.%02d.stopaccel is %g: set it to what the axis bears; 0: as maxaccel\n", axis,
+		    own->stopaccel);
 	} else {
 		return true;
 	}
@@ -202,7 +239,22 @@ static enum passo_error configure_axis(int axis, struct passo_servo_options *opt
 		error = passo_configure_inputs(&passo, (uint8_t)axis, &switches);
 	options->axis[axis].speed = (uint64_t)(own->maxvel * own->scale * ONE);
 	options->axis[axis].acceleration = (uint64_t)(own->maxaccel * own->scale * ONE);
+	options->axis[axis].stop =
+	    (uint64_t)((own->stopaccel > 0 ? own->stopaccel : own->maxaccel) * own->scale * ONE);
 	return error;
+}
+
+static enum passo_error configure_encoder(uint8_t axis)
+{
+	const struct passo_encoder_config config = {
+	    .index_inverted = pins->encoder[axis].index_invert,
+	    .index_gated = pins->encoder[axis].index_mask,
+	    .ratio = UINT32_C(1) << 16, /* its following error is not looked at */
+	    .limit = UINT16_MAX,
+	    .stop = PASSO_FOLLOWING_SHOW,
+	};
+
+	return passo_configure_encoder(&passo, axis, &config);
 }
 
 static enum passo_error configure(void)
@@ -218,7 +270,32 @@ static enum passo_error configure(void)
 		error = passo_clear_estop(&passo);
 	for (int axis = 0; axis < axes && error == PASSO_OK; axis++)
 		error = configure_axis(axis, &options);
+	for (uint8_t axis = 0; axis < PASSO_AXES_MAX && error == PASSO_OK; axis++) {
+		if (pins->encoder[axis].used)
+			error = configure_encoder(axis);
+	}
 	return error == PASSO_OK ? passo_servo_check(&servo, &passo, &options) : error;
+}
+
+/* Calls in which positions and inputs are read once, so that the frames take no more than their share of the
+ * wire; see passo_frame.h. */
+static unsigned turns_of(long period)
+{
+	const unsigned all = passo_machine(&passo)->axes;
+	const unsigned spaced = servo.options.buffer > 0 ? servo.options.buffer : PASSO_SERVO_BUFFER;
+	const double most = (double)period * NS * linux_host.speed_hz / (WORD_BITS * SHARE);
+	const double read =
+	    all + PASSO_FRAME_OVERHEAD + (inputs > 0 ? INPUT_WORDS + PASSO_FRAME_OVERHEAD : 0);
+	double words = PASSO_LINE_WORDS(all) + outputs + PASSO_FRAME_OVERHEAD;
+
+	words += (double)(PASSO_RAMP_WORDS + PASSO_FRAME_OVERHEAD) / spaced + LOOK_WORDS;
+	if (has_encoders)
+		words += last_encoder - first_encoder + 1u + PASSO_FRAME_OVERHEAD;
+	for (unsigned found = 1; found < TURNS_MAX; found++) {
+		if (words + read / found <= most)
+			return found;
+	}
+	return TURNS_MAX;
 }
 
 static void switch_on(void)
@@ -239,6 +316,7 @@ static void switch_on(void)
 			error = passo_enable(&passo, (uint8_t)axis, true);
 	}
 	*pins->lag = servo.lag;
+	turns = turns_of(period_ns);
 	if (error == PASSO_OK)
 		phase = ON;
 	else if (error != PASSO_ERROR_MOVING) /* until it is at rest */
@@ -296,7 +374,7 @@ static void command(void)
 
 	for (int axis = 0; axis < axes; axis++) {
 		const struct stepgen *own = &pins->stepgen[axis];
-		const double steps = *own->command * own->scale;
+		const double steps = *own->command * own->scale + own->origin;
 
 		places[axis] = servo.place[axis];
 		if (!*own->enable)
@@ -371,28 +449,135 @@ static void read_inputs(void)
 	}
 }
 
-static void read_pins(long period)
+static void read_stepgens(long period)
 {
 	int32_t counts[PASSO_AXES_MAX];
+
+	if (passo_positions(&passo, counts) != PASSO_OK)
+		return;
+	for (int axis = 0; axis < axes; axis++) {
+		struct stepgen *own = &pins->stepgen[axis];
+		const double scale = own->scale > 0 ? own->scale : 1;
+		const double time = (double)period * NS * turns;
+
+		*own->counts = counts[axis];
+		*own->feedback = (counts[axis] - own->origin) / scale;
+		*own->velocity = (counts[axis] - own->before) / (scale * time);
+		own->before = counts[axis];
+	}
+}
+
+/* Periods after the counts were read, in whole steps like them. */
+static void extrapolate(long period)
+{
+	for (int axis = 0; axis < axes; axis++) {
+		const struct stepgen *own = &pins->stepgen[axis];
+		const double scale = own->scale > 0 ? own->scale : 1, time = turn * (double)period * NS;
+
+		*own->feedback = (rint(own->before + *own->velocity * scale * time) - own->origin) / scale;
+	}
+}
+
+/* Where an axis was at the index: its counts and those of the encoder belong to the same clock. */
+static bool set_origin(uint8_t axis, uint16_t latch)
+{
+	struct stepgen *own = &pins->stepgen[axis];
+	const struct encoder *encoder = &pins->encoder[axis];
+	uint32_t words[PASSO_CHANNEL_ENCODER_POSITION_BASE - PASSO_CHANNEL_POSITION_BASE + PASSO_AXES_MAX];
+	const unsigned at = PASSO_CHANNEL_ENCODER_POSITION_BASE - PASSO_CHANNEL_POSITION_BASE + axis;
+
+	if (passo_host_read(&host, PASSO_ADDRESS_CHANNEL_BASE + PASSO_CHANNEL_POSITION_BASE, words, at + 1u)
+	    != PASSO_OK)
+		return false;
+	const double since = (int16_t)((uint16_t)words[at] - latch);
+	own->origin =
+	    rint((int32_t)(words[axis] + passo.axis[axis].offset) - since / encoder->scale * own->scale);
+	return true;
+}
+
+static void look_for_index(uint8_t axis)
+{
+	struct encoder *own = &pins->encoder[axis];
+	hal_bit_t *const of_axis = axis < axes ? pins->stepgen[axis].index_enable : NULL;
+	const uint16_t address =
+	    PASSO_ADDRESS_CHANNEL_BASE + PASSO_CHANNEL_ENCODER_BASE + PASSO_ENCODER_INDEX;
+	uint32_t word;
+
+	if (!*own->index_enable && !(of_axis && *of_axis)) {
+		own->waits = false;
+		return;
+	}
+	if (passo_host_read(&host, (uint16_t)(address + axis * PASSO_CHANNEL_ENCODER_STRIDE), &word, 1)
+	    != PASSO_OK)
+		return;
+	const struct passo_encoder_index index = passo_unpack_encoder_index(word);
+	if (!own->waits || index.indexes == own->indexes) {
+		own->waits = true;
+		own->indexes = index.indexes;
+		return;
+	}
+	if (of_axis && *of_axis) {
+		if (!set_origin(axis, index.latch))
+			return;
+		*of_axis = 0;
+	}
+	if (*own->index_enable) {
+		own->zero = *own->raw - (int16_t)((uint16_t)*own->raw - index.latch);
+		*own->index_enable = 0;
+	}
+	own->waits = false;
+}
+
+static void read_encoders(void)
+{
+	const unsigned address =
+	    PASSO_ADDRESS_CHANNEL_BASE + PASSO_CHANNEL_ENCODER_POSITION_BASE + first_encoder;
+	uint32_t words[PASSO_AXES_MAX];
+
+	if (passo_host_read(&host, (uint16_t)address, words, last_encoder - first_encoder + 1u) != PASSO_OK)
+		return;
+	const uint32_t at = host.hardware.microseconds(&linux_host), now = reads++ % PAST;
+	const uint32_t time = reads > PAST ? at - read_at[now] : 0u;
+
+	read_at[now] = at;
+	for (uint8_t axis = first_encoder; axis <= last_encoder; axis++) {
+		struct encoder *own = &pins->encoder[axis];
+		if (!own->used)
+			continue;
+		const double scale = isfinite(own->scale) && own->scale != 0 ? own->scale : 1;
+
+		own->scale = scale;
+		*own->raw = (int32_t)words[axis - first_encoder];
+		look_for_index(axis);
+		if (*own->reset)
+			own->zero = *own->raw;
+		*own->count = (int32_t)((uint32_t)*own->raw - (uint32_t)own->zero);
+		*own->position = *own->count / scale;
+		if (time > 0)
+			*own->velocity =
+			    (int32_t)((uint32_t)*own->raw - (uint32_t)own->before[now]) / (scale * time * US);
+		own->before[now] = *own->raw;
+	}
+}
+
+static void read_pins(long period)
+{
 	const struct passo_snapshot *snapshot = passo_snapshot(&passo);
 
-	if (passo_positions(&passo, counts) == PASSO_OK) {
-		for (int axis = 0; axis < axes; axis++) {
-			struct stepgen *own = &pins->stepgen[axis];
-			const double scale = own->scale > 0 ? own->scale : 1;
-
-			*own->counts = counts[axis];
-			*own->feedback = counts[axis] / scale;
-			*own->velocity = (counts[axis] - own->before) / (scale * (double)period * NS);
-			own->before = counts[axis];
-		}
-	}
-	if (inputs > 0)
+	if (has_encoders)
+		read_encoders(); /* first: an index changes the origin of the positions */
+	turn = (turn + 1u) % turns;
+	if (turn == 0u)
+		read_stepgens(period);
+	else
+		extrapolate(period);
+	if (inputs > 0 && turn + 1u == turns)
 		read_inputs();
 	*pins->state = (hal_s32_t)snapshot->state;
 	*pins->cause = (hal_s32_t)snapshot->cause;
 	*pins->frames = host.counters.frames;
 	*pins->retries = host.counters.retries;
+	*pins->words = linux_host.words;
 }
 
 /* A function of HAL: `arg` is read_pins() or write_pins(). */
@@ -408,6 +593,44 @@ static void call(void *arg, long period)
 
 /* ------------------------------------------------------------------------------------------- load ---- */
 
+/* The list of encoders: digits with commas between them. */
+static bool encoder_is_wanted(uint8_t axis)
+{
+	for (const char *text = encoders; *text; text++) {
+		if (*text == '0' + axis)
+			return true;
+	}
+	return false;
+}
+
+/* false: said what is wrong. */
+static bool check_encoders(void)
+{
+	const uint8_t there = passo_machine(&passo)->axes;
+
+	for (const char *text = encoders; *text; text++) {
+		const bool is_digit = (text - encoders) % 2 == 0;
+		if (is_digit ? *text < '0' || *text >= '0' + there : *text != COMMA) {
+			TELL("encoders=%s: numbers of encoders from 0 to %u, with commas between them\n",
+			    encoders, there - 1u);
+			return false;
+		}
+		if (!is_digit)
+			continue;
+		const uint8_t axis = (uint8_t)(*text - '0');
+		if (!has_encoders || axis < first_encoder)
+			first_encoder = axis;
+		if (!has_encoders || axis > last_encoder)
+			last_encoder = axis;
+		has_encoders = true;
+	}
+	if (has_encoders && !passo.has_encoders) {
+		TELL("encoders=%s: the core has no encoders: build it with ENCODERS=1\n", encoders);
+		return false;
+	}
+	return true;
+}
+
 static int make_stepgen(int axis)
 {
 	struct stepgen *own = &pins->stepgen[axis];
@@ -422,6 +645,7 @@ static int make_stepgen(int axis)
 	failed |= hal_param_float_newf(HAL_RW, &own->scale, component, name, axis, "position-scale");
 	failed |= hal_param_float_newf(HAL_RW, &own->maxvel, component, name, axis, "maxvel");
 	failed |= hal_param_float_newf(HAL_RW, &own->maxaccel, component, name, axis, "maxaccel");
+	failed |= hal_param_float_newf(HAL_RW, &own->stopaccel, component, name, axis, "stopaccel");
 	failed |= hal_param_u32_newf(HAL_RW, &own->steplen, component, name, axis, "steplen");
 	failed |= hal_param_u32_newf(HAL_RW, &own->stepspace, component, name, axis, "stepspace");
 	failed |= hal_param_u32_newf(HAL_RW, &own->dirsetup, component, name, axis, "dirsetup");
@@ -432,8 +656,29 @@ static int make_stepgen(int axis)
 	failed |= hal_param_bit_newf(HAL_RW, &own->home_invert, component, name, axis, "home-invert");
 	failed |= hal_param_bit_newf(HAL_RW, &own->limit_invert, component, name, axis, "limit-invert");
 	failed |= hal_param_bit_newf(HAL_RW, &own->alarm_invert, component, name, axis, "alarm-invert");
+	if (pins->encoder[axis].used)
+		failed |= hal_pin_bit_newf(HAL_IO, &own->index_enable, component, name, axis, "index-enable");
 	own->scale = 1;
 	own->steplen = own->stepspace = own->dirsetup = own->dirhold = 5000; /* as those of hostmot2, ns */
+	return failed;
+}
+
+static int make_encoder(uint8_t axis)
+{
+	struct encoder *own = &pins->encoder[axis];
+	const char *const name = PREFIX "encoder.%02d.%s";
+	int failed = 0;
+
+	failed |= hal_pin_s32_newf(HAL_OUT, &own->count, component, name, axis, "count");
+	failed |= hal_pin_s32_newf(HAL_OUT, &own->raw, component, name, axis, "rawcounts");
+	failed |= hal_pin_float_newf(HAL_OUT, &own->position, component, name, axis, "position");
+	failed |= hal_pin_float_newf(HAL_OUT, &own->velocity, component, name, axis, "velocity");
+	failed |= hal_pin_bit_newf(HAL_IO, &own->index_enable, component, name, axis, "index-enable");
+	failed |= hal_pin_bit_newf(HAL_IN, &own->reset, component, name, axis, "reset");
+	failed |= hal_param_float_newf(HAL_RW, &own->scale, component, name, axis, "scale");
+	failed |= hal_param_bit_newf(HAL_RW, &own->index_invert, component, name, axis, "index-invert");
+	failed |= hal_param_bit_newf(HAL_RW, &own->index_mask, component, name, axis, "index-mask");
+	own->scale = 1;
 	return failed;
 }
 
@@ -463,6 +708,11 @@ static int make_pins(void)
 	if (!pins)
 		return -1;
 	*pins = (struct pins){0};
+	for (uint8_t axis = 0; axis < PASSO_AXES_MAX; axis++) {
+		pins->encoder[axis].used = encoder_is_wanted(axis);
+		if (pins->encoder[axis].used)
+			failed |= make_encoder(axis);
+	}
 	for (int axis = 0; axis < axes; axis++)
 		failed |= make_stepgen(axis);
 	failed |= make_inputs_and_outputs();
@@ -476,6 +726,7 @@ static int make_pins(void)
 	failed |= hal_pin_float_newf(HAL_OUT, &pins->trim, component, PREFIX "queue.trim-ppm");
 	failed |= hal_pin_u32_newf(HAL_OUT, &pins->frames, component, PREFIX "link.frames");
 	failed |= hal_pin_u32_newf(HAL_OUT, &pins->retries, component, PREFIX "link.retries");
+	failed |= hal_pin_u32_newf(HAL_OUT, &pins->words, component, PREFIX "link.words");
 	failed |= hal_export_funct(PREFIX "read", call, (void *)&READ, 1, 0, component);
 	failed |= hal_export_funct(PREFIX "write", call, (void *)&WRITE, 1, 0, component);
 	return failed;
@@ -505,6 +756,8 @@ static bool open_core(void)
 	}
 	inputs = passo_has_inputs(&passo) ? GROUPS * (unsigned)axes + 1u : 0u;
 	outputs = passo.has_outputs;
+	if (!check_encoders())
+		return false;
 	if (inputs == 0)
 		return true;
 	const uint64_t time = passo_clocks(&passo, (uint32_t)watchdog_ms * MS);

@@ -46,7 +46,7 @@ struct passo_rig_wheel {
 	uint64_t gap;
 	uint64_t interval; /* of a spindle: clocks per count at its mean speed, 2^16 */
 	uint32_t wander;   /* by which its speed wanders either way, 2^16 of the mean */
-	uint32_t per_turn; /* counts from index to index */
+	uint32_t per_turn; /* counts from index to index; of other encoders 0: without an index */
 	uint64_t
 	    start_up; /* clocks from rest to that speed; not 0: output 0 turns it on, output 1 reverses it */
 };

@@ -114,6 +114,9 @@ void rig_turn(struct passo_rig *rig, unsigned number, uint64_t clock, struct pas
 	wheel->count += wanted > wheel->count ? 1 : -1;
 	wheel->next = clock + rig->config.wheel[number].gap;
 	rig_show(rig, number, inputs);
+	if (rig->config.wheel[number].per_turn != 0u)
+		rig_set(inputs, PASSO_INPUT_ENCODER_INDEX, rig->config.wheel[number].axis,
+		    wheel->count % (int64_t)rig->config.wheel[number].per_turn == 0);
 }
 
 /* Clocks to the next count, 2^16: the speed goes from one random value to the next in a part of a turn. */

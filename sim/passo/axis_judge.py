@@ -94,7 +94,11 @@ class Marks:
         clocks: Sequence[np.ndarray],
         positions: Sequence[np.ndarray],
     ) -> "Marks":
-        """The corners of a path of lines from the origin: each between its last step and the next one."""
+        """The corners of a path of lines from the origin: each between its last step and the next one.
+
+        Where a merged line passes a corner, a motor may make its last step there later than another one makes
+        the next.
+        """
         path = rounded(lines, settings)
         own = path.points @ settings.motors.map(len(settings.axes)).T
         places = np.round(own * settings.scales).astype(int)
@@ -106,7 +110,7 @@ class Marks:
             done = _steps_until(places[corners, motor], wanted, positions[motor])
             begin = np.maximum(begin, np.concatenate([[0.0], time])[done])
             end = np.minimum(end, np.append(time, np.inf)[done])
-        end = np.maximum(begin, np.where(np.isinf(end), begin, end))
+        end = np.where(np.isinf(end), begin, end)
         order = np.argsort(np.concatenate([begin, end]))
         off = path.off_along(np.array([direction for direction, _ in settings.limits()]))
         return cls(np.concatenate([begin, end])[order], np.concatenate([off, off])[order])

@@ -13,13 +13,14 @@ from passo.expand.tools import lengths, read_tools
 from passo.failure import BadInputError
 from passo.grbl import Grbl, pseudo_terminal, serve
 from passo.grbl import talk as talk_grbl
-from passo.grbl_setup import SettingsFile, machine_at
+from passo.grbl_setup import SettingsFile
 from passo.machine import Machine, Switch, read_switch
 from passo.machine_file import read_machine
 from passo.move_forms import WHOLE_MAX
 from passo.moves import AXES_MAX, CHANNELS_MAX
 from passo.run import open_engine
 from passo.shafts import SHAFTS_MAX, Shaft, Shafts, read_encoder, read_spindle
+from passo.spindle_at import turning_machine_at
 from passo.terminal import Terminal, talk
 
 
@@ -96,9 +97,9 @@ def _grbl(options: argparse.Namespace) -> None:
     machine = read_machine(options.machine)
     settings = SettingsFile(options.settings) if options.settings else None
     tools = lengths(read_tools(options.tools))
-    with machine_at(options.engine, machine) as engine:
+    with turning_machine_at(options.engine, machine) as (engine, spindle):
         if not options.pty:
-            talk_grbl(sys.stdin, Grbl(engine, machine, write, settings, tools))
+            talk_grbl(sys.stdin, Grbl(engine, machine, write, settings, tools, spindle))
             return
         with pseudo_terminal(options.pty) as terminal:
             write(f"{options.pty}: 115200 baud or any other\n")
@@ -107,4 +108,4 @@ def _grbl(options: argparse.Namespace) -> None:
                 with suppress(BlockingIOError):  # nobody reads: lost, as on a wire
                     os.write(terminal, text.encode())
 
-            serve(Grbl(engine, machine, said, settings, tools), terminal)
+            serve(Grbl(engine, machine, said, settings, tools, spindle), terminal)

@@ -5,23 +5,29 @@ import contextlib
 import os
 import time
 import tty
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path as FilePath
 from typing import Any
 
 from passo.driver import Driver
+from passo.expand.block import words_of
+from passo.expand.lathe import DIAMETERS, Lathe, Said
+from passo.expand.machine import Machine
+from passo.expand.place import LineError
 from passo.failure import BadInputError, Failure
 from passo.gcode import Gcode, set_tool_lengths
 from passo.grbl_setup import SettingsFile, defaults_of, encoders_of, setup_of
 from passo.machine_file import MachineFile
 from passo.native import ffi, planner
-from passo.part import LOOPS_PER_SECOND, SLEWS_PER_SECOND
+from passo.part import FOLLOWS_PER_SECOND, LOOPS_PER_SECOND, SLEWS_PER_SECOND
 from passo.path import LOOK_AHEAD, Path, PathFeed
 from passo.player import Player
+from passo.spindle_at import SpindleAt
 
 REAL_TIME = (b"?", b"!", b"~", b"\x18")  # lines of one of these bytes alone are sent without an end of line
 PATIENCE = 600  # simulated seconds until the machine rests
 READ = 4096
+ENDS = (20, 300)  # M2 and M30
 
 
 class Grbl:
@@ -34,9 +40,14 @@ class Grbl:
         write: Callable[[str], object],
         settings: SettingsFile | None = None,
         tools: Mapping[int, float] | None = None,
+        spindle: SpindleAt | None = None,
     ):
-        """Settings and offsets are kept in a file, or not at all; `tools` are lengths in mm."""
+        """Settings and offsets are kept in a file, or not at all; `tools` are lengths in mm.
+
+        `spindle`: at the pins, is turned as commanded.
+        """
         self.engine, self.machine, self._write = engine, machine, write
+        self.spindle = spindle
         driver = Driver(engine, machine.clock_hz, engine.parameters)
         slew = machine.clock_hz // SLEWS_PER_SECOND
         driver.call("configure_motion", slew, slew, 1 << 16)
@@ -80,7 +91,11 @@ class Grbl:
         self._c.passo_grbl_poll(self.c)
         self._check()
         self.player.feed.driver.hardware.check()
-        self.engine.run(self.machine.clock_hz // LOOPS_PER_SECOND)
+        polls = LOOPS_PER_SECOND
+        if self.spindle:
+            self.spindle.drive(self.player.power, keep=False)
+            polls = FOLLOWS_PER_SECOND if self.player.follows else polls
+        self.engine.run(self.machine.clock_hz // polls)
         self.engine.drain()
 
     def wait(self, until: Callable[[], bool], seconds: float = PATIENCE) -> bool:
@@ -89,6 +104,10 @@ class Grbl:
         while not until() and self.engine.clock < end:
             self.poll()
         return until()
+
+    def say(self, text: str) -> None:
+        """Write a text of the PC's own."""
+        self._write(text)
 
     def line(self, text: bytes) -> None:
         """A line, until it is answered; a real-time byte, until it has taken effect."""
@@ -116,10 +135,50 @@ class Grbl:
             raise error
 
 
+class Cycles:
+    """Threads and taps (G76, G84, G74) of typed lines, which the console itself does not have."""
+
+    def __init__(self, grbl: Grbl):
+        self._grbl = grbl
+        self._machine = Machine(grbl.machine.gcode, {}, at_zero=True)
+        self._lathe = Lathe(self._machine)
+
+    def plain(self, line: str) -> Iterator[str]:
+        """The lines that a line becomes, each to be executed before the next."""
+        if line.strip().startswith("$") or line.strip().encode("utf-8", "surrogateescape") in REAL_TIME:
+            self._lathe = Lathe(self._machine)
+            yield line
+            return
+        words = words_of(line)
+        if not self._lathe.becomes_others(words):
+            if any(word.letter == "M" and word.code in ENDS for word in words):
+                self._lathe = Lathe(self._machine)
+            yield line
+            return
+        self._look()
+        modes = ("G8", "G7") if self._machine.diameters else ()
+        yield from modes[:1]
+        try:
+            for plain in self._lathe.plain(Said(line, words, ())):
+                yield plain.text
+                self._look()
+        except LineError as error:
+            self._grbl.say(f"[MSG:{error}]\r\n")
+            yield line  # is refused
+        yield from modes[1:]
+
+    def _look(self) -> None:
+        """The state of the interpreter is that of the console."""
+        self._machine.gcode.c[0] = self._grbl.player.gcode.c[0]
+        self._machine.diameters = self._machine.mode("DIAMETER") == DIAMETERS
+
+
 def talk(lines: Iterable[str], grbl: Grbl) -> None:
-    """Type lines, and wait until all has been executed."""
+    """Type lines, threads and taps as those that they become, and wait until all has been executed."""
+    cycles = Cycles(grbl)
     for line in lines:
-        grbl.line(line.encode("utf-8", "surrogateescape"))
+        for plain in cycles.plain(line):
+            grbl.line(plain.encode("utf-8", "surrogateescape"))
     grbl.wait(lambda: grbl.is_idle)
 
 

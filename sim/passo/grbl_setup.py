@@ -3,7 +3,7 @@
 
 import math
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
@@ -18,7 +18,7 @@ from passo.machine_file import ENCODER_FILTER, MachineFile, check_pins
 from passo.moves import PinTiming
 from passo.native import ffi, planner
 from passo.output import write_bytes
-from passo.rig import gap_of
+from passo.rig import RATIO_ONE, gap_of, interval_of
 from passo.run import open_engine, parameters_for
 from passo.values import BadValueError
 
@@ -152,14 +152,38 @@ def setup_of(machine: MachineFile, parameters: Parameters, defaults: Any, pages:
 
 def core_for(machine: MachineFile) -> Parameters:
     """The core that a machine needs."""
-    core = parameters_for(len(machine.motors))
+    core = parameters_for(machine.core_axes)
     return replace(core, clock_hz=machine.clock_hz, **dict.fromkeys(machine.parts, 1))
 
 
-def attach(engine: Any, machine: MachineFile, skews: dict[int, int] | None = None) -> Any:
-    """A simulated machine at the core: each axis in the middle of its travel, switches at its ends.
+def attach(
+    engine: Any,
+    machine: MachineFile,
+    skews: dict[int, int] | None = None,
+    per_turn: int = 0,
+    spindle: bool = False,
+) -> Any:
+    """A simulated machine at the core; returns the rigs, with their libraries.
 
-    `skews`: steps by which motors begin elsewhere. Returns the rigs, with their libraries.
+    `spindle`: its encoder is behind the motors; it turns at full speed while output 0 is on.
+    """
+    config = rig_config(engine, machine, skews, per_turn)
+    if not spindle:
+        return engine.attach(config)
+    config.wheel[config.wheels] = spindle_wheel(machine)
+    config.wheels += 1
+    rigs = engine.attach(config)
+    for c, rig in rigs:
+        c.passo_rig_drive(rig, config.wheels - 1, RATIO_ONE)
+    return rigs
+
+
+def rig_config(
+    engine: Any, machine: MachineFile, skews: dict[int, int] | None = None, per_turn: int = 0
+) -> Any:
+    """The `struct passo_rig_config` of a machine: each axis in the middle of its travel, switches at its end.
+
+    `skews`: steps by which motors begin elsewhere; `per_turn`: counts from index to index of their encoders.
     For the probe there is a plate that Z (or the last axis) touches a quarter of its travel below the middle.
     """
     config = ffi().new("struct passo_rig_config *")
@@ -169,7 +193,7 @@ def attach(engine: Any, machine: MachineFile, skews: dict[int, int] | None = Non
         round(float(limits.steps_per_mm) * end.travel)
         for limits, end in zip(machine.settings.axes, machine.ends, strict=True)
     ]
-    add_encoders(config, machine)
+    add_encoders(config, machine, per_turn)
     for motor, start in enumerate(rows @ np.array(travels) // 2):
         config.start[motor] = start + (skews or {}).get(motor, 0)
     for axis, (travel, end) in enumerate(zip(travels, machine.ends, strict=True)):
@@ -191,13 +215,26 @@ def attach(engine: Any, machine: MachineFile, skews: dict[int, int] | None = Non
             wire.share, wire.at = rows[wire.other][axis], 2 * at
         wire.is_switch, wire.inverted = True, machine.switches.inverted and pin != NUMBERS["probe"]
     config.wires = len(wires)
-    return engine.attach(config)
+    return config
 
 
-def add_encoders(config: Any, machine: MachineFile) -> None:
+def spindle_wheel(machine: MachineFile) -> dict[str, int]:
+    """The `struct passo_rig_wheel` of its spindle, with its encoder behind the motors."""
+    assert machine.spindle
+    return {
+        "axis": len(machine.motors),
+        "interval": interval_of(machine.clock_hz, machine.gcode.spindle_maximum, machine.spindle.counts),
+        "wander": round(machine.spindle.wander * RATIO_ONE / 100),
+        "per_turn": machine.spindle.counts,
+        "start_up": round(machine.spindle.start_up * machine.clock_hz),
+    }
+
+
+def add_encoders(config: Any, machine: MachineFile, per_turn: int = 0) -> None:
     """Make those of the motors the wheels of a `struct passo_rig_config`."""
     for number, (motor, ratio) in enumerate(machine.encoder_ratios.items()):
-        config.wheel[number] = {"axis": motor, "ratio": ratio, "gap": gap_of(ENCODER_FILTER)}
+        wheel = {"axis": motor, "ratio": ratio, "gap": gap_of(ENCODER_FILTER), "per_turn": per_turn}
+        config.wheel[number] = wheel
     config.wheels = len(machine.encoders)
 
 
@@ -208,6 +245,24 @@ def attach_encoders(engine: Any, machine: MachineFile) -> None:
         config.axes = engine.parameters.channels * engine.parameters.axes
         add_encoders(config, machine)
         engine.attach(config)
+
+
+@contextmanager
+def served(
+    name: str, machine: MachineFile, per_turn: int = 0, tell: Callable[[Any], None] = lambda rigs: None
+) -> Iterator[Any]:
+    """An engine with the machine at its pins, with the encoder of its spindle; `per_turn`: see attach().
+
+    `tell` is given its rigs.
+    """
+    core = core_for(machine)
+    if machine.spindle:
+        more = parameters_for(len(machine.motors) + 1)
+        core = replace(core, axes=more.axes, encoders=1, outputs=1)
+    with open_engine(name, core, machine.clock_hz) as engine:
+        if machine.has_inputs or core.encoders:
+            tell(attach(engine, machine, per_turn=per_turn, spindle=machine.spindle is not None))
+        yield engine
 
 
 @contextmanager

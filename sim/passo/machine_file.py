@@ -39,7 +39,7 @@ from passo.values import BadValueError, Written, shown
 FILE_KEYS = (
     *("board", "clock_hz", "junction_deviation", "arc_tolerance", "profile", "spindle_maximum", "laser"),
     *("soft_limits", "probe", "drive", "chip", "kinematics", "pins", "switches", "home", "motors", "axis"),
-    "spindle",
+    *("spindle", "host"),
 )
 AXIS_KEYS = (
     *("name", "steps_per_mm", "speed", "acceleration", "jerk", "jump", "travel", "home", "switches"),
@@ -56,6 +56,7 @@ HOME_KEYS = ("seek", "speed", "pull_off")
 HOME_ENDS = ("low", "high")
 SWITCHES = ("home", "limit_low", "limit_high")
 CHIPS = ("STM32F103C8", "STM32F103CB")
+HOSTS = ("stm32", "linuxcnc")
 PROFILES = ("linear", "cosine", "sigmoid", "jerk")
 TRAVEL = 200  # mm
 RATIO_ONE = 1 << 16  # counts per step
@@ -126,6 +127,7 @@ class MachineFile:
     chip: str = CHIPS[0]  # of the firmware
     kinematics: str = "cartesian"
     spindle: Spindle | None = None
+    host: str = HOSTS[0]
 
     @property
     def letters(self) -> str:
@@ -202,7 +204,12 @@ class MachineFile:
     @property
     def parts(self) -> tuple[str, ...]:
         """The optional parts of the core that it needs."""
-        return _parts(self.ends, self.switches, self.gcode.spindle_maximum)
+        return _parts(self.ends, self.switches, self.gcode.spindle_maximum, self.spindle is not None)
+
+    @property
+    def core_axes(self) -> int:
+        """Axes of the core: one for each motor, and one whose inputs are the encoder of the spindle."""
+        return len(self.motors) + (self.spindle is not None)
 
     @property
     def clock_hz(self) -> int:
@@ -251,8 +258,9 @@ def _machine(path: Path, data: Table) -> MachineFile:
     switches = _switches(data)
     _check_squared(axes, ends, switches)
     spindle = read_positive(data, "spindle_maximum") if "spindle_maximum" in data else 0
-    parts = _parts(ends, switches, spindle)
-    board, clock_hz = _board(data, wanted_hz, ends, len(motors.map(len(axes))), parts)
+    has_encoder = "spindle" in data
+    parts = _parts(ends, switches, spindle, has_encoder)
+    board, clock_hz = _board(data, wanted_hz, ends, len(motors.map(len(axes))) + has_encoder, parts)
     timing = within("pins", lambda: read_pins(pins, clock_hz, (ENABLE_INVERTED,)))
     deviation = _number(data, "junction_deviation", JUNCTION_DEVIATION)
     settings = PathSettings(axes, clock_hz, junction_deviation=deviation, profile=profile, motors=motors)
@@ -287,6 +295,7 @@ def _machine(path: Path, data: Table) -> MachineFile:
         read_word(data, "chip", CHIPS) if "chip" in data else CHIPS[0],
         kinematics,
         encoder,
+        read_word(data, "host", HOSTS) if "host" in data else HOSTS[0],
     )
 
 
@@ -297,8 +306,6 @@ def _spindle(data: Table, maximum: int) -> Spindle | None:
     check_known(table, SPINDLE_KEYS)
     if not maximum:
         raise BadValueError("it needs spindle_maximum")
-    if "board" in data:
-        raise BadValueError("no board has pins for its encoder: write clock_hz instead of board")
     counts = read_integer(table, "counts", COUNTS.start, COUNTS.stop - 1)
     start_up, wander = _number(table, "start_up", Spindle.start_up), _number(table, "wander", Spindle.wander)
     if not start_up or wander > WANDER_MAX:
@@ -398,17 +405,19 @@ def _check_shared(
             )
 
 
-def _parts(ends: Sequence[AxisEnds], switches: Switches, spindle_maximum: int) -> tuple[str, ...]:
+def _parts(
+    ends: Sequence[AxisEnds], switches: Switches, spindle_maximum: int, has_spindle: bool
+) -> tuple[str, ...]:
     needs = {
         "inputs": switches.probe or any(end.switches for end in ends),
-        "encoders": any(end.encoders for end in ends),
+        "encoders": has_spindle or any(end.encoders for end in ends),
         "outputs": spindle_maximum > 0,
     }
     return tuple(part for part, needed in needs.items() if needed)
 
 
 def _board(
-    data: Table, wanted: int | None, ends: Sequence[AxisEnds], motors: int, parts: Sequence[str]
+    data: Table, wanted: int | None, ends: Sequence[AxisEnds], axes: int, parts: Sequence[str]
 ) -> tuple[str, int]:
     """The board, if there is one, and the clock that is wanted, or that of the board with these parts."""
     if "board" not in data:
@@ -421,7 +430,7 @@ def _board(
     name = read_word(data, "board", tuple(boards.names()))
     try:
         board = boards.board(name)
-        parameters = board.parameters(motors, wanted and wanted / 1e6, parts)
+        parameters = board.parameters(axes, wanted and wanted / 1e6, parts)
     except PllError as error:
         raise BadValueError(f"clock_hz: {error}") from None
     except BoardError as error:

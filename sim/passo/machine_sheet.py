@@ -33,6 +33,10 @@ ESTOP = (
     "E-stop: a normally closed contact of the button from 3.3 V to estop_n, 10 kohm from there to ground. "
     "A second contact must cut the power of drives and spindle without any electronics."
 )
+ENCODERS = (
+    "Encoders: the pins take 3.3 V. Pairs of RS-422 go through a receiver at 3.3 V (AM26LV32), outputs of "
+    "5 V through a 74LVC245 at 3.3 V, open collectors get 1 kohm to 3.3 V. Ground the shield at one end."
+)
 GROUNDS = (
     "Grounds: FPGA board, Blue Pill, buffers and logic inputs have one, joined at one point; another wire "
     "of ground is beside the SPI wires, at most 10 cm long. The supply of the motors reaches it nowhere else."
@@ -108,6 +112,8 @@ class Sheet:
             yield f"Switches: {self.contact}. {SWITCHES}"
         if any(wire.signal == "estop_n" for wire in self.wires):
             yield ESTOP
+        if any(_is_encoder(wire) for wire in self.wires):
+            yield ENCODERS
         yield GROUNDS
 
 
@@ -129,8 +135,14 @@ def _is_output(wire: Wire) -> bool:
     return _kind(wire) in ("outputs", "power") and wire.end not in UNUSED
 
 
+def _is_encoder(wire: Wire) -> bool:
+    return _kind(wire).startswith("encoder_") and wire.end not in UNUSED
+
+
 def _group(wire: Wire) -> str:
     """The block at the end of a wire."""
+    if _is_encoder(wire):
+        return wire.end.partition(":")[0]
     if wire.end.startswith("drive "):
         return wire.end.partition(":")[0]
     if _is_output(wire):
@@ -214,7 +226,7 @@ def _wire(sheet: Sheet, wire: Wire, y: float) -> Iterator[str]:
         yield _text(BUFFER_X + BUFFER_W / 2, y + 4, channel.replace(", ", " > "), "small", "middle")
     else:
         yield _text((right + END_X) / 2, y - 3, sheet.via(wire), "small", "middle")
-    label = wire.end.partition(": ")[2] if wire.end.startswith("drive ") else wire.end
+    label = wire.end.partition(": ")[2] if wire.end.startswith(("drive ", "encoder ")) else wire.end
     yield _text(END_X + 8, y + 4, label.partition(",")[0] if wire.signal == "estop_n" else label)
 
 

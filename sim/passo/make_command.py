@@ -22,6 +22,7 @@ from passo.console import stages
 from passo.drives import drives
 from passo.failure import BadInputError, Failure
 from passo.grbl_setup import MILLION, default_settings, encoders_of, setting_counts
+from passo.linuxcnc_files import linuxcnc_files
 from passo.machine_file import CHIPS, MOTOR_KEYS, MachineFile, read_machine
 from passo.machine_sheet import Sheet, Wire, draw, page
 from passo.native import ffi, planner
@@ -48,6 +49,7 @@ OUTPUTS = ("spindle on", "spindle reverse", "flood coolant", "mist coolant")  # 
 SWITCH_PORTS = {"limit_low": "limit, low end", "limit_high": "limit, high end", "home": "home switch"}
 AXIS_PORTS = {"step": "STEP (PUL)", "dir": "DIR", "enable": "EN (ENA)"}
 ENCODER_PORTS = {"encoder_a": "A", "encoder_b": "B", "encoder_index": "index, or ground"}
+SPINDLE_PORTS = {**ENCODER_PORTS, "encoder_index": "index"}
 INPUT_NAMES = {pin.name for pin in INPUTS}
 OTHER_PORTS = {
     "power": "spindle PWM or laser",
@@ -63,16 +65,18 @@ def make_machine(path: Path, out: Path | None = None, build: bool = True) -> boo
     """
     need_repository("passo make")
     machine = read_machine(path)
+    if machine.host == "linuxcnc":
+        return _make_linuxcnc(machine, out or _folder(path), build)
     if not machine.board:
         raise BadInputError(f"{path}: board is missing; must be one of {', '.join(names())}")
     _check_firmware(machine)
     chosen = board(machine.board)
     try:
-        wires = list(_wires(machine, chosen))
+        wires = list(_wires(machine, chosen, {name: f"Blue Pill {pin}" for name, pin in host_pins().items()}))
     except BoardError as error:
         raise BadInputError(f"{path}: {error}") from None
     summary = list(_summary(machine, chosen))
-    folder = out or paths.results / "machines" / path.stem
+    folder = out or _folder(path)
     kind = drives()[machine.drive].input if machine.drive else ""
     title = f"{path.stem}: wiring"
     facts = title, chosen.title, machine.drive, kind, machine.switches.inverted, wires, summary
@@ -91,6 +95,38 @@ def make_machine(path: Path, out: Path | None = None, build: bool = True) -> boo
     write_text(folder / SUMMARY, "\n".join([*summary, *images, ""]))
     print("\n".join([*summary, *images, f"written to {folder}: {', '.join(results)}, {SUMMARY}"]))
     return FAILED_BITSTREAM not in images
+
+
+def _folder(path: Path) -> Path:
+    return Path(paths.results) / "machines" / path.stem
+
+
+def _make_linuxcnc(machine: MachineFile, folder: Path, build: bool) -> bool:
+    """The configuration; of a board also its wires to a Raspberry Pi and its bitstream."""
+    chosen = board(machine.board) if machine.board else None
+    results, summary = linuxcnc_files(machine), [f"{machine.path.name}: LinuxCNC"]
+    if chosen:
+        try:
+            wires = list(_wires(machine, chosen, raspberry_pins()))
+        except BoardError as error:
+            raise BadInputError(f"{machine.path}: {error}") from None
+        results[WIRING] = _aligned([("signal", "FPGA pin", "on the board", "to"), *wires])
+        summary = [*_summary(machine, chosen, "LinuxCNC")]
+    empty_folder(folder, (*results, SUMMARY))
+    for name, lines in results.items():
+        write_text(folder / name, "\n".join([*lines, ""]))
+    images = list(_bitstream(machine, chosen, folder / machine.path.stem)) if build and chosen else []
+    write_text(folder / SUMMARY, "\n".join([*summary, *images, ""]))
+    print("\n".join([*summary, *images, f"written to {folder}: {', '.join(results)}, {SUMMARY}"]))
+    return FAILED_BITSTREAM not in images
+
+
+def raspberry_pins() -> dict[str, str]:
+    """Pins of its header by the signal of the core, from the table in docs/hosts.md."""
+    text = (paths.docs / "hosts.md").read_text(encoding="utf-8")
+    names = {"SCLK": "spi_sclk", "MOSI": "spi_mosi", "MISO": "spi_miso", "CS": "spi_cs_n", "irq": "irq"}
+    rows = re.findall(r"^\| (\w+)(?: \([^|]*\))? \| (\d+) \|", text, re.M)
+    return {names[name]: f"Raspberry Pi {pin}" for name, pin in rows if name in names}
 
 
 def _check_firmware(machine: MachineFile) -> None:
@@ -112,6 +148,10 @@ def _check_firmware(machine: MachineFile) -> None:
         )
     if machine.encoders and chip != LARGE:
         raise BadInputError(f'{machine.path}: the firmware for {chip} has no encoders, chip = "{LARGE}" has')
+    if machine.spindle and chip != LARGE:
+        raise BadInputError(
+            f'{machine.path}: spindle: the firmware for {chip} has no threads, chip = "{LARGE}" has'
+        )
     if machine.gcode.left_out and chip != LARGE:
         raise BadInputError(
             f"{machine.path}: the axes are {' '.join(machine.letters)}; "
@@ -142,6 +182,11 @@ def _images(machine: MachineFile, chosen: Board, path: Path) -> Iterator[str]:
     said = make_firmware(*IMAGE[machine.chip], to, f"MACHINE={given}")
     flash = next(line.split(maxsplit=1)[1] for line in said.splitlines() if line.startswith("flash"))
     yield f"  {FIRMWARE}  {flash}"
+    yield from _bitstream(machine, chosen, path)
+
+
+def _bitstream(machine: MachineFile, chosen: Board, path: Path) -> Iterator[str]:
+    tell = stages()
     bitstream = path.with_suffix(f".{chosen.device.family.suffix}")
     try:
         made = synth.make(chosen, *core_of(machine), bitstream.resolve(), tell, at_home(machine, chosen))
@@ -180,9 +225,9 @@ def settings_lines(machine: MachineFile) -> list[str]:
     ]
 
 
-def _wires(machine: MachineFile, chosen: Board) -> Iterator[Wire]:
-    where, host = places(chosen.name), host_pins()
-    for port, pin in chosen.ports(len(machine.motors), machine.parts).items():
+def _wires(machine: MachineFile, chosen: Board, host: dict[str, str]) -> Iterator[Wire]:
+    where = places(chosen.name)
+    for port, pin in chosen.ports(machine.core_axes, machine.parts).items():
         if port != OSCILLATOR:
             name, index = re.fullmatch(r"(\w+?)(?:\[(\d+)\])?", port).groups()
             there = where.get(port if index else f"{name}[0]", where.get(port, ""))
@@ -198,7 +243,9 @@ def _unused(name: str) -> str:
 def _end(machine: MachineFile, chosen: Board, host: dict[str, str], name: str, index: int) -> str:
     """What a wire leads to; nothing if it is not used."""
     if name in host:
-        return f"Blue Pill {host[name]}"
+        return host[name]
+    if index == len(machine.motors) and name in (*AXIS_PORTS, *SWITCH_PORTS, *ENCODER_PORTS):
+        return f"encoder of the spindle: {SPINDLE_PORTS[name]}" if name in ENCODER_PORTS else ""
     if name in AXIS_PORTS:
         return f"drive {machine.motors[index]}: {AXIS_PORTS[name]}"
     if name in SWITCH_PORTS:
@@ -223,13 +270,14 @@ def _aligned(rows: list[tuple[str, ...]]) -> list[str]:
     return ["  ".join(map(str.ljust, row, widths)).rstrip() for row in rows]
 
 
-def _summary(machine: MachineFile, chosen: Board) -> Iterator[str]:
+def _summary(machine: MachineFile, chosen: Board, host: str = "") -> Iterator[str]:
     axes, pins = machine.settings.axes, machine.pins
-    yield f"{machine.path.name}: {chosen.title}, {machine.chip}"
+    yield f"{machine.path.name}: {chosen.title}, {host or machine.chip}"
     with_parts = ", ".join(machine.parts) or "no parts"
     spi = next(mhz for mhz in SPI_MHZ if 4e6 * mhz <= machine.clock_hz)
     clock = f"{machine.clock_hz / 1e6:g} MHz; SPI {spi} MHz"
-    yield f"  core   {len(machine.motors)} of {chosen.axes} axes, {with_parts}, {clock}"
+    more = ", one for the encoder of the spindle" if machine.spindle else ""
+    yield f"  core   {machine.core_axes} of {chosen.axes} axes{more}, {with_parts}, {clock}"
     longest = {"STEP": max(pins.step_high, pins.step_low), "DIR": max(pins.dir_setup, pins.dir_hold)}
     times = (f"{name} {clocks / machine.clock_hz * 1e6:.3g} us" for name, clocks in longest.items())
     yield f"  pins   {', '.join(times)}; EN active {'low' if machine.enable_inverted else 'high'}"
@@ -247,7 +295,7 @@ def _summary(machine: MachineFile, chosen: Board) -> Iterator[str]:
 
 def core_of(machine: MachineFile) -> tuple[int, float, tuple[str, ...]]:
     """Axes, MHz and parts of its core, as the board makes it."""
-    return len(machine.motors), machine.clock_hz / 1e6, machine.parts
+    return machine.core_axes, machine.clock_hz / 1e6, machine.parts
 
 
 def at_home(machine: MachineFile, chosen: Board) -> dict[str, int]:
@@ -269,6 +317,7 @@ def definitions(machine: MachineFile) -> dict[str, Any]:
         "OUTPUTS": int("outputs" in machine.parts),
         **_motors(machine.settings.motors),
         **(_squares(machine) if machine.squared else {}),
+        **({"TURN_COUNTS": machine.gcode.turn_counts} if machine.spindle else {}),
         **({"ENCODERS": ",".join(map(str, encoders_of(machine)))} if machine.encoders else {}),
     }
 

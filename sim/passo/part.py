@@ -260,9 +260,8 @@ def _say(text: str) -> None:
 
 def core_of(machine: MachineFile) -> Parameters:
     """The core that plays parts; the encoder of a spindle is at the inputs behind the motors."""
-    if machine.spindle is None:
-        return replace(parameters_for(len(machine.motors)), encoders=int(bool(machine.encoders)))
-    return replace(parameters_for(len(machine.motors) + 1), encoders=1, outputs=1)
+    core = parameters_for(machine.core_axes)
+    return replace(core, encoders=int("encoders" in machine.parts), outputs=int(machine.spindle is not None))
 
 
 def plan_part(

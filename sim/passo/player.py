@@ -34,6 +34,17 @@ class Player:
         """Lines and chords taken so far."""
         return self.c.chords
 
+    @property
+    def follows(self) -> bool:
+        """Whether a motion is in step with the spindle."""
+        return self.c.thread.step != self._c.PASSO_PLAYER_FREE
+
+    @property
+    def power(self) -> int:
+        """Of the spindle, as commanded: up to 65535. Lines behind a thread do not change its speed."""
+        output = self.c.thread.output if self.follows else self._c.passo_gcode_output(self.gcode.c)
+        return output & 0xFFFF
+
     def poll(self) -> str:
         """Take what there is room for, and poll the driver; return the event, such as "PAUSED"."""
         error = self._c.passo_player_poll(self.c, self._event)

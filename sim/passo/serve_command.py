@@ -12,7 +12,7 @@ import numpy as np
 
 from passo.build import Parameters
 from passo.failure import BadInputError
-from passo.grbl_setup import machine_at
+from passo.grbl_setup import served
 from passo.machine_file import read_machine
 from passo.move_forms import WHOLE_MAX
 from passo.moves import AXES_MAX
@@ -49,7 +49,7 @@ def _engine(options: argparse.Namespace) -> Any:
     if options.machine:
         if options.axes is not None or options.clock is not None:
             raise BadInputError("--machine has its own axes and clock: leave --axes and --clock out")
-        return machine_at(options.engine, read_machine(options.machine))
+        return served(options.engine, read_machine(options.machine))
     axes, clock_hz = options.axes or AXES, options.clock or CLOCK_HZ
     if not 1 <= axes <= AXES_MAX or not 1 <= clock_hz <= WHOLE_MAX:
         raise BadInputError(f"--axes must be 1 to {AXES_MAX}, --clock 1 to {WHOLE_MAX}")

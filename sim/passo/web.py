@@ -17,6 +17,7 @@ from passo.failure import BuildError
 from passo.output import make_folder, write_text
 from passo.report_page import FOLDER, SHELL, page, source_of
 from passo.toolchain import paths, short
+from passo.web_python import EXPORTS, write_python
 from passo.web_rules import rules
 
 FOLDERS = (paths.driver, paths.console, paths.protocol, paths.planner, paths.gcode, paths.core)
@@ -38,11 +39,14 @@ OWN = (
     "passo_web_program.c",
 )
 MACHINE = ("toml.js", "values.js", "machine_file.js")  # reads machine files
-WEB = ("runner.js", "share.js", "save.js", *MACHINE, "web.js")
-WORKER = ("bytes.js", "motion.js", "advice.js", "worker.js")
+WEB = ("runner.js", "share.js", "save.js", *MACHINE, "advice.js", "web.js")
+WORKER = ("bytes.js", "motion.js", "advice.js", "expand.js", "worker.js")
 EXAMPLE = paths.root / "examples" / "gcode"
 # The warnings are those of GCC, which compiles the same sources elsewhere: Clang has others.
-FLAGS = ("--target=wasm32-wasi", "-mexec-model=reactor", "-std=c11", "-O2", "-s")
+FLAGS = (
+    *("--target=wasm32-wasi", "-mexec-model=reactor", "-std=c11", "-O2", "-s"),
+    *(f"-Wl,--export={name}" for name in EXPORTS),
+)
 
 
 def module() -> Path:
@@ -81,6 +85,7 @@ def build(folder: Path) -> Path:
     make_folder(folder)
     made = folder / "index.html"
     write_text(made, page("Try Passo", body))
+    write_python(folder)
     return made
 
 

@@ -57,6 +57,7 @@ def rules() -> dict[str, Any]:
         "profiles": own.PROFILES,
         "kinematics": own.KINEMATICS,
         "chips": own.CHIPS,
+        "hosts": own.HOSTS,
         "home_ends": own.HOME_ENDS,
         "switches": own.SWITCHES,
         "enable_inverted": own.ENABLE_INVERTED,
@@ -99,13 +100,13 @@ def _board(board: Board) -> dict[str, Any]:
     kinds = chain.from_iterable(combinations(PORTS, count) for count in range(len(PORTS) + 1))
     refused = {}
     for parts in kinds:
-        for motors in range(1, len(AXIS_LETTERS) + 1):
+        for axes in range(1, len(AXIS_LETTERS) + 2):  # with that of a spindle
             try:
-                board.parameters(motors, None, parts)
+                board.parameters(axes, None, parts)
             except PllError as error:
-                refused[f"{motors} {','.join(parts)}"] = f"clock_hz: {error}"
+                refused[f"{axes} {','.join(parts)}"] = f"clock_hz: {error}"
             except BoardError as error:
-                refused[f"{motors} {','.join(parts)}"] = str(error)
+                refused[f"{axes} {','.join(parts)}"] = str(error)
     made = (round(pll.mhz * 1e6) for pll in possible(board.device.family, board.oscillator_mhz))
     return {
         "hz": [round(board.pll(None, parts).mhz * 1e6) for parts in ((), tuple(PORTS))],

@@ -6,6 +6,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import tempfile
 from collections.abc import Iterator
@@ -14,9 +15,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
-from passo.grbl_setup import machine_at
-from passo.machine_file import read_machine
+from passo.engine import NUMBERS
+from passo.grbl_setup import served
+from passo.linuxcnc_files import linuxcnc_files
+from passo.machine_file import MachineFile, read_machine
+from passo.native import ffi
+from passo.rig import CHANGE, CHANGES_PER_DRAIN
 from passo.toolchain import paths
 
 from tests.helpers.serving import serving
@@ -40,6 +46,7 @@ class Result:
     ferror: list[float]
     pins: dict[str, str]
     events: Any
+    turns: Any  # clocks of the index of the spindle
     log: str
 
 
@@ -75,18 +82,18 @@ def alone() -> Iterator[Path]:
         try:
             yield folder
         finally:
-            shutil.rmtree(folder)
+            shutil.rmtree(folder, ignore_errors=True)
 
 
-def prepare(folder: Path, program: str, device: str, changes: dict[str, str]) -> None:
-    """The example, without its screen, and with changes of its two files."""
-    for source in EXAMPLE.iterdir():
-        text = source.read_text()
+def prepare(folder: Path, machine: MachineFile, program: str, device: str, changes: dict[str, str]) -> None:
+    """The configuration that `passo make` makes, without its screen, and with changes of its files."""
+    for name, lines in linuxcnc_files(machine).items():
+        text = "\n".join([*lines, ""])
         for old, new in changes.items():
             text = text.replace(old, new)
         text = re.sub(r"^DISPLAY = .*", "DISPLAY = ./ui.py", text, flags=re.M)
         text = re.sub(r"^DEVICE = .*", f"DEVICE = {device}", text, flags=re.M)
-        (folder / source.name).write_text(text)
+        (folder / name).write_text(text)
     shutil.copy(paths.tests / "linuxcnc" / "ui.py", folder)
     (folder / "program.ngc").write_text(program)
     folder.chmod(0o777)
@@ -95,25 +102,37 @@ def prepare(folder: Path, program: str, device: str, changes: dict[str, str]) ->
 def _call(folder: Path, *command: str) -> subprocess.CompletedProcess[str]:
     # it refuses to run as root
     user = ["setpriv", f"--reuid={NOBODY}", f"--regid={NOBODY}", "--clear-groups"]
-    return subprocess.run(
+    called = subprocess.Popen(
         [*(user if os.geteuid() == 0 else []), *command],
         cwd=folder,
         env=os.environ | {"HOME": str(folder)},
         stdin=subprocess.DEVNULL,
-        capture_output=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
         text=True,
-        timeout=SECONDS_MAX,
+        start_new_session=True,  # all that it starts ends with it
     )
+    try:
+        out, err = called.communicate(timeout=SECONDS_MAX)
+    except subprocess.TimeoutExpired:
+        os.killpg(called.pid, signal.SIGKILL)
+        called.communicate()
+        raise
+    return subprocess.CompletedProcess(command, called.returncode, out, err)
 
 
-def run_hal(script: str, device: str = "") -> tuple[str, Any]:
-    """What is said to a script of halcmd, and the events of the pins; CORE in it is the device."""
-    installed()
+def run_hal(script: str, device: str = "", text: str = "") -> tuple[str, Any]:
+    """What is said to a script of halcmd, and the events of the pins; CORE in it is the device.
+
+    `text`: of another machine file than that of the example.
+    """
     with alone() as folder:
+        installed()
         place = folder / "core"
         (folder / "script.hal").write_text(script.replace("CORE", device or f"unix:{place}"))
         folder.chmod(0o777)
-        with machine_at("model", read_machine(EXAMPLE / "machine.toml")) as core:
+        (folder / "machine.toml").write_text(text or (EXAMPLE / "machine.toml").read_text())
+        with served("model", read_machine(folder / "machine.toml")) as core:
             with serving(core, place, keep=True) as server:
                 place.chmod(0o777)
                 done = _call(folder, "halrun", "-f", "script.hal")
@@ -121,20 +140,77 @@ def run_hal(script: str, device: str = "") -> tuple[str, Any]:
         return done.stdout + done.stderr, events
 
 
-def run_linuxcnc(program: str, engine: str = "model", changes: dict[str, str] | None = None) -> Result:
-    """Home and run a program; `changes`: of the text of the example."""
-    installed()
+SIX_AXES = 'host = "linuxcnc"\nclock_hz = 16_000_000\n' + "".join(
+    f'[[axis]]\nname = "{letter}"\nsteps_per_mm = 80\nspeed = 100\nacceleration = 500\nswitches = ["home"]\n'
+    for letter in "XYZABC"
+)
+WIRE = """
+loadrt threads name1=servo period1=1000000
+loadrt passo device=CORE axes=6
+loadrt integ
+addf passo.0.read servo
+addf integ.0 servo
+addf passo.0.write servo
+setp integ.0.in 1
+"""
+ON = "setp passo.0.stepgen.00.enable 1\nstart\nloadusr -w sleep 2\n"
+LOOK = "getp passo.0.link.words\ngetp integ.0.out\n"
+
+
+def share_of_wire(sclk_hz: int = 4_000_000) -> float:
+    """What the frames of six axes with inputs take of it, at 1 kHz."""
+    settings = "".join(
+        f"setp passo.0.stepgen.{axis:02}.{key} {value}\n"
+        for axis in range(6)
+        for key, value in {"position-scale": 80, "maxvel": 100, "maxaccel": 1000}.items()
+    )
+    script = WIRE + settings + ON + LOOK + "loadusr -w sleep 8\n" + LOOK + "getp passo.0.fault\n"
+    said, _ = run_hal(script, text=SIX_AXES)
+    first, begun, last, ended = (number_of(word) for word in re.findall(r"^[\dx.A-F]+$", said, re.M))
+    assert "FALSE" in said.split(), said
+    return (last - first) * 32 / sclk_hz / (ended - begun)
+
+
+def number_of(text: str) -> float:
+    """Of halcmd: hexadecimal, or not."""
+    return int(text, 16) if text.startswith("0x") else float(text)
+
+
+def indexes(library: Any, rig: Any) -> Any:
+    """Clocks at which the index of a spindle rises."""
+    buffer, found = ffi().new("struct passo_rig_change[]", CHANGES_PER_DRAIN), [np.empty(0, CHANGE)]
+    while count := library.passo_rig_drain(rig, buffer, CHANGES_PER_DRAIN):
+        found.append(np.frombuffer(ffi().buffer(buffer), CHANGE, count).copy())
+    changes = np.concatenate(found)
+    return changes["clock"][(changes["input"] == NUMBERS["encoder_index"]) & (changes["levels"] != 0)]
+
+
+def run_linuxcnc(
+    program: str,
+    engine: str = "model",
+    changes: dict[str, str] | None = None,
+    text: str = "",
+    per_turn: int = 0,
+) -> Result:
+    """Home and run a program; `changes`: of the text of its files; `text`: of another machine file.
+
+    `per_turn`: counts from index to index of the encoders of motors.
+    """
     with alone() as folder:
+        installed()
         place = folder / "core"
-        prepare(folder, program, f"unix:{place}", changes or {})
-        machine = read_machine(EXAMPLE / "machine.toml")
-        with machine_at(engine, machine) as core:
+        (folder / "machine.toml").write_text(text or (EXAMPLE / "machine.toml").read_text())
+        machine = read_machine(folder / "machine.toml")
+        prepare(folder, machine, program, f"unix:{place}", changes or {})
+        rigs: list[Any] = []
+        with served(engine, machine, per_turn, rigs.extend) as core:
             with serving(core, place, keep=True) as server:
                 place.chmod(0o777)
                 done = _call(folder, "linuxcnc", "machine.ini")
-            events = server.events
+            events, turns = server.events, indexes(*rigs[0]) if rigs else np.empty(0)
         logs = [file.read_text() for file in folder.glob("linuxcnc_*.txt")]
         result = folder / "result.json"
         found = json.loads(result.read_text()) if result.exists() else {}
         empty = {"homed": False, "ended": False, "said": [], "positions": [], "ferror": [], "pins": {}}
-        return Result(**(empty | found), events=events, log="\n".join([done.stdout, done.stderr, *logs]))
+        log = "\n".join([done.stdout, done.stderr, *logs])
+        return Result(**(empty | found), events=events, turns=turns, log=log)

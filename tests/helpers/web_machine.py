@@ -21,6 +21,7 @@ def web_machine(machine: MachineFile) -> dict[str, Any]:
         "profile": machine.settings.profile,
         "inputs": machine.gcode.inputs,
         "power": int(machine.gcode.power),
+        "turn_counts": machine.gcode.turn_counts,
         "rows": rows,
         "motors": [
             {"name": name, "per_step": 1 / scale}

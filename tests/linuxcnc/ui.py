@@ -10,7 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-LIMIT = 800.0  # s
+LIMIT = 300.0  # s
 ARRIVED = 1e-6  # mm; programs end where all axes have a whole step
 LOOK = 0.01
 SETTLED = 20  # looks at rest

@@ -34,19 +34,23 @@ TESTS = (
     *("test_driver_together", "test_driver_units", "test_driver_goto", "test_driver_homed"),
     *("test_driver_sessions", "test_driver_noise", "test_driver_square", "test_driver_frames"),
     *("test_driver_waits", "test_driver_pass", "test_endings", "test_follow", "test_gcode_lathe"),
+    *("test_driver_promises", "test_path_parts_rare", "test_path_promises"),
 )
+LONG = Path(__file__).with_name("c_long.py")
 MOST_FAIL = 2  # tests of a file that do not run on copies
 REACHED = BUILD / "reached"
 LONGEST = 20.0  # seconds of the processor: a test that takes longer is no judge here
-MOST = 40.0  # for all tests of a mutant
+LIMITS = (1.5, 8.0, 40.0)  # for all tests of a mutant: of each round
 TEST = 0.01  # what pytest needs for each
+FEW = 8  # tests that a mutant gets first
+NEAR = 3  # a kill in the same function counts as that many more in the file
 PLAYED = "tests"  # those that reach a mutant have judged it, if there are any
 
 
 def tests(only: Collection[str] = ()) -> list[Path]:
-    """The files, or some of them."""
-    names = [name for name in TESTS if not only or name in only]
-    return [paths.tests / f"{name}.py" for name in names if (paths.tests / f"{name}.py").exists()]
+    """The files, or some of them; LONG only if it is named."""
+    files = [paths.tests / f"{name}.py" for name in TESTS if not only or name in only]
+    return [file for file in (*files, *([LONG] if LONG.stem in only else [])) if file.exists()]
 
 
 class Worker:
@@ -166,33 +170,54 @@ def _record(
 
 
 class Kills:
-    """Which tests kill mutants of which file, and how much of what they reach is in it."""
+    """What is known of the tests: which have killed mutants of a function or file, and which have not."""
 
     def __init__(self, mutants: Sequence[CMutant], fates: Fates) -> None:
-        self.count: Counter[tuple[str, str]] = Counter()
+        self.killed: Counter[tuple[str, str]] = Counter()  # of a file, and once more of its function
+        self.passed: Counter[tuple[str, str]] = Counter()
         self.of_file: dict[str, set[str]] = {}
         for mutant in mutants:
             self.of_file.setdefault(mutant.file, set()).add(mutant.name)
-            self.add(mutant, fates.get(mutant.name).killed)
+            fate = fates.get(mutant.name)
+            self.add(mutant, fate.tried or [], fate.killed)
 
-    def add(self, mutant: CMutant, case: str) -> None:
-        """A test has killed a mutant."""
-        self.count[mutant.file, case] += 1
+    def add(self, mutant: CMutant, tried: Sequence[str], killer: str) -> None:
+        """Cases that were tried one after the other; the last of them is the one that killed, if any did."""
+        for case in tried[: tried.index(killer)] if killer in tried else tried:
+            self.passed[mutant.file, case] += 1
+        if killer:
+            self.killed[mutant.file, killer] += 1
+            self.killed[f"{mutant.file} {mutant.function}", killer] += 1
 
     def cost(self, mutant: CMutant, test: Test) -> float:
-        """Seconds for a kill, as far as is known; tests of this file alone are better than those of many."""
+        """Seconds for a kill, as far as is known: a test that killed in the same function is the best one,
+        one of this file alone is better than one of many, and one that often did not kill is a bad one."""
+        case = test.case(mutant)
         share = len(test.reached & self.of_file[mutant.file]) / len(test.reached)
-        return (test.seconds + TEST) / (share + self.count[mutant.file, test.case(mutant)])
+        near = self.killed[f"{mutant.file} {mutant.function}", case]
+        kills = share + self.killed[mutant.file, case] + NEAR * near
+        return (test.seconds + TEST) * (1 + self.passed[mutant.file, case]) / kills
 
     def chosen(self, mutant: CMutant, reaching: Sequence[Test], limit: float) -> list[Test]:
-        """As many tests as there is time for, the best ones first."""
+        """As many tests as there is time for, the best ones first; of one file, each further one waits
+        longer, as it mostly looks at the same."""
+        ranks: Counter[str] = Counter()
+        costs: list[tuple[float, Test]] = []
+        for cost, test in sorted(((self.cost(mutant, test), test) for test in reaching), key=_first):
+            file = test.name.partition("::")[0]
+            ranks[file] += 1
+            costs.append((cost * ranks[file], test))
         chosen: list[Test] = []
         total = 0.0
-        for test in sorted(reaching, key=lambda test: self.cost(mutant, test)):
+        for _, test in sorted(costs, key=_first):
             if total + test.seconds + TEST <= limit:
                 total += test.seconds + TEST
                 chosen.append(test)
         return chosen
+
+
+def _first(pair: tuple[float, Test]) -> float:
+    return pair[0]
 
 
 class Judge:
@@ -216,7 +241,8 @@ class Judge:
         name, _, of = case.rpartition(" ")
         if test := self.by_name.get(name):
             return case == test.case(mutant)
-        return self.some and of.endswith(f"/{mutant.source}")
+        other = self.some or name.startswith(f"{LONG.relative_to(paths.root)}::")
+        return other and of.endswith(f"/{mutant.source}")
 
     def again(self) -> int:
         """Of other sources or tests: what was killed must be killed by the same test once more; how many."""
@@ -227,7 +253,7 @@ class Judge:
             if fate.killed and not self._holds(fate.killed, mutant):
                 test, fate.killed, fate.says = self.by_name.get(fate.killed.rpartition(" ")[0]), "", ""
                 if test:
-                    self._ask(mutant, fate, [test], MOST)
+                    self._ask(mutant, fate, [test], LIMITS[-1])
                     count += 1
         self.fates.save()
         return count
@@ -245,15 +271,19 @@ class Judge:
             self._ask(mutant, fate, chosen, limit)
 
     def _ask(self, mutant: CMutant, fate: Fate, chosen: Sequence[Test], limit: float) -> None:
-        cases = {test.name: test.case(mutant) for test in chosen}
-        asked = {"mutant": mutant.number, "tests": list(cases), "seconds": 2 * limit + 5}
-        done = self.worker.ask(asked)
-        # what alone needs longer than it was recorded with is no fault of the mutant
-        if done["says"].startswith("ends") and self.worker.ask({**asked, "mutant": 0})["test"]:
-            done = self.worker.ask({**asked, "seconds": 10 * limit + 60})
-        if done["test"]:
-            fate.killed, fate.says = cases[done["test"]], done["says"]
-            self.kills.add(mutant, fate.killed)
+        """The first few alone: mostly one of them kills, and the files of the others are not read."""
+        for some in filter(None, (chosen[:FEW], chosen[FEW:])):
+            cases = {test.name: test.case(mutant) for test in some}
+            asked = {"mutant": mutant.number, "tests": list(cases), "seconds": 1.5 * limit + 2}
+            done = self.worker.ask(asked)
+            # what alone needs longer than it was recorded with is no fault of the mutant
+            if done["says"].startswith("ends") and self.worker.ask({**asked, "mutant": 0})["test"]:
+                done = self.worker.ask({**asked, "seconds": 10 * limit + 60})
+            if done["test"]:
+                fate.killed, fate.says = cases[done["test"]], done["says"]
+            self.kills.add(mutant, list(cases.values()), fate.killed)
+            if fate.killed:
+                return
 
 
 def judge(
@@ -262,11 +292,12 @@ def judge(
     fates: Fates,
     show: Callable[[str], None],
     only: Collection[str] = (),
-    limits: Sequence[float] = (1.5, MOST),
+    limits: Sequence[float] = LIMITS,
 ) -> None:
-    """Let the tests, or those of some files, judge some of all mutants, first for a second."""
+    """Let the tests, or those of some files, judge some of all mutants, first for a second each."""
     files = tests(only)
-    worker = Worker(ahead=[f"tests.{file.stem}" for file in files])
+    modules = [".".join(file.relative_to(paths.root).with_suffix("").parts) for file in files]
+    worker = Worker(ahead=modules)
     try:
         known = record(worker, all_mutants, files, show)
         judging = Judge(worker, known, mutants, fates, bool(only))

@@ -5,7 +5,7 @@
         [--tests NAME,...]
 
 `--only` takes `rtl`, `c`, modules of rtl/ and files of the driver, the planner and G-code; `--tests` files of
-tests, which then are all that judges C. A run continues
+tests, or c_long, which then are all that judges C. A run continues
 where the last one ended: the fates are kept in build/mutants, and all that was killed is killed once more
 when the sources or the judges are others. A run writes docs/reference/mutants.md, one of a part its rows
 there, if its mutants are those of the page; `--page` writes what is known without a run.

@@ -66,7 +66,7 @@ def _object(file: Path, folders: Sequence[Path]) -> Path:
 
 def build(root: Path = paths.root, program: Path = BUILD / "soak") -> Path:
     """Build the program from the sources under root; return its path."""
-    folders = [root / folder for folder in FOLDERS]
+    folders = list(FOLDERS.values()) if root == paths.root else [root / folder for folder in FOLDERS]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         objects = list(pool.map(lambda file: _object(file, [*folders, paths.engine]), sources(*folders)))
     return compile_to(program, *objects, "-ldl")

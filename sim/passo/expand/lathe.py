@@ -50,6 +50,14 @@ class Lathe:
         self.machine = machine
         self._tap: _Tap | None = None
 
+    def becomes_others(self, words: Sequence[Word]) -> bool:
+        """Whether a line is a thread or a tap, by its command or that in force, which other motions end."""
+        codes = {word.code for word in words if word.letter == "G"}
+        if codes & MOTIONS:
+            self._tap = None
+        moves = any(word.letter in AXIS_LETTERS for word in words)
+        return bool(codes & {THREADING, *TAPPING}) or (self._tap is not None and moves)
+
     def plain(self, line: Said) -> Iterator[Said]:
         """The lines that a line becomes, each to be taken before the next; raises LineError."""
         line = self._radii(line)

@@ -9,8 +9,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 
-import numpy as np
-
 from passo.expand.block import Word
 from passo.expand.height_map import HeightMap
 from passo.expand.place import LineError
@@ -169,17 +167,21 @@ class Machine:
 
     def probe(self, surface: HeightMap, text: str, words: Sequence[Word]) -> tuple[float, ...]:
         """Execute a line with a probe; return where it ends, mm, machine coordinates. Raises LineError."""
-        c, begin = self.gcode.c, np.array(self.gcode.position)
+        c, begin = self.gcode.c, self.gcode.position
         self.advance(text, words)
-        end, command = np.array(self.gcode.position), self.mode(MOTION)
-        tip = np.array([0.0, 0.0, self.gcode.c.tool_length])
-        ends = ((place[:3] - tip) / NANOMETERS for place in (begin, end))
+        end, command = self.gcode.position, self.mode(MOTION)
+        tip = (0, 0, c.tool_length)
+        ends = (
+            [(at - of_tip) / NANOMETERS for at, of_tip in zip(place, tip, strict=False)]
+            for place in (begin, end)
+        )
         share = share_of_probe(surface, command, *ends)
-        place = np.rint(begin + (end - begin) * (1.0 if share is None else share)).astype(int)
-        planner().passo_gcode_set_position(c, place.tolist())
+        done = 1.0 if share is None else share
+        place = [round(a + (b - a) * done) for a, b in zip(begin, end, strict=True)]
+        planner().passo_gcode_set_position(c, place)
         self._set(self._position, range(self.axes), True)
         self.probed = self.work, share is not None
-        return tuple((place / NANOMETERS).tolist())
+        return tuple(at / NANOMETERS for at in place)
 
     def number(self, index: int) -> float:
         """A numbered parameter beyond the program's own; raises LineError."""

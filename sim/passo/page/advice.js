@@ -3,9 +3,19 @@
 // member `gcode` of RULES.
 "use strict";
 
+const THREADS = [330, 331];
+
 class Advice {
     // `isTaken(word)`: whether the interpreter has a command or word; `inputs`: number of those of M66.
-    constructor(rules, { letters, inputs, power }, isTaken) { Object.assign(this, { rules, letters, inputs, power, isTaken }); }
+    constructor(rules, { letters, inputs, power, turn_counts }, isTaken) {
+        Object.assign(this, { rules, letters, inputs, power, hasEncoder: turn_counts > 0, isTaken });
+    }
+
+    // Whether a program has what only expanded ones may have.
+    static needsExpanding(text, { expanded }) {
+        const patterns = expanded.map(pattern => new RegExp(pattern));
+        return text.split(/\r\n|\r|\n/).some(line => patterns.some(pattern => pattern.test(Advice.bare(line))));
+    }
 
     // A line without comments and blanks, in lower case.
     static bare(text) {
@@ -22,8 +32,7 @@ class Advice {
 
     // An error of a line with the word that it is about, where that is known.
     explain(number, error, line) {
-        const { rules, letters } = this, bare = Advice.bare(line), words = Advice.words(bare);
-        if (rules.expanded.some(pattern => new RegExp(pattern).test(bare))) return `${error}: expand the file: passo expand`;
+        const { rules, letters } = this, words = Advice.words(Advice.bare(line));
         if (number === rules.no_port) return `${error}: ${this.ports}`;
         const printer = words.find(({ letter }) => letter === "E");
         if (number === rules.unused && printer) return `${error}: ${printer.text} (${rules.letters.E})`;
@@ -32,6 +41,7 @@ class Advice {
             if (rules.axes.includes(letter) && !letters.includes(letter)) return `${error}: ${text}: the machine has the axes ${[...letters].join(" ")}`;
             if (letter in rules.letters && !this.isTaken(text)) return `${error}: ${text} (${rules.letters[letter]})`;
             if ("GM".includes(letter) && !this.isTaken(text)) {
+                if (this.hasEncoder && letter === "G" && THREADS.includes(code)) return `${error}: ${text} (this page turns no spindle): passo run`;
                 const known = rules.advice.find(([own, start, stop]) => own === letter && code >= start && code < stop);
                 const [norm, advice] = known ? known.slice(3) : rules.otherwise;
                 return `${error}: ${text} (${norm}): ${advice}`;

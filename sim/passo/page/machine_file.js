@@ -54,7 +54,7 @@ class MachineReader {
         const spindle = own(data, "spindle_maximum", 0, (table, key) => readInteger(table, key, 1, RULES.whole_max));
         this.parts = RULES.parts.filter(part => ({
             inputs: this.switches.probe || this.ends.some(end => end.switches.length),
-            encoders: this.ends.some(end => end.encoders.length),
+            encoders: data.has("spindle") || this.ends.some(end => end.encoders.length),
             outputs: spindle > 0,
         })[part]);
         this.hz = this.board(wanted);
@@ -65,9 +65,10 @@ class MachineReader {
         if (this.switches.soft_limits && !this.ends.some(end => end.home)) wrong("soft_limits: no axis has a home");
         const tolerance = own(data, "arc_tolerance", defaults.arc_tolerance);
         if (!tolerance) wrong("arc_tolerance must be greater than 0");
-        within("spindle", () => this.checkSpindle(spindle));
+        this.turnCounts = within("spindle", () => this.checkSpindle(spindle));
         own(data, "laser", false, readFlag);
         own(data, "chip", "", (table, key) => readWord(table, key, RULES.chips));
+        own(data, "host", "", (table, key) => readWord(table, key, RULES.hosts));
         return this.described(profile, tolerance, spindle);
     }
 
@@ -226,7 +227,7 @@ class MachineReader {
         const { data, ends, parts } = this;
         if (!data.has("board")) return wanted;
         const name = readWord(data, "board", Object.keys(RULES.boards)), board = RULES.boards[name];
-        const refused = board.refused[`${this.rows.length} ${parts.join()}`];
+        const refused = board.refused[`${this.rows.length + Number(data.has("spindle"))} ${parts.join()}`];
         if (refused) wrong(refused);
         let hz = board.hz[Number(parts.length > 0)];
         if (wanted !== null) {
@@ -301,14 +302,14 @@ class MachineReader {
 
     checkSpindle(maximum) {
         const { data } = this, { own } = MachineReader;
-        if (!data.has("spindle")) return;
+        if (!data.has("spindle")) return 0;
         const table = readSubtable(data, "spindle"), [low, high] = RULES.counts, most = RULES.wander_max;
         checkKnown(table, RULES.keys.spindle);
         if (!maximum) wrong("it needs spindle_maximum");
-        if (data.has("board")) wrong("no board has pins for its encoder: write clock_hz instead of board");
-        readInteger(table, "counts", low, high);
+        const counts = readInteger(table, "counts", low, high);
         const startUp = own(table, "start_up", RULES.defaults.start_up), wander = own(table, "wander", 0);
         if (!startUp || wander > most) wrong(`start_up must be greater than 0, wander at most ${most} %`);
+        return counts;
     }
 
     get motors() {
@@ -340,6 +341,7 @@ class MachineReader {
             profile,
             inputs: has("inputs") * (1 + count),
             power: has("outputs"),
+            turn_counts: this.turnCounts,
             rows,
             motors: this.motors.map((name, n) => ({ name, per_step: 1 / axes[rows[n].findIndex(Boolean)].steps_per_mm.number })),
         };

@@ -58,6 +58,7 @@ class Form {
             if (target.files.length) this.open(target.files[0]);
             target.value = "";
         };
+        by("tools").onchange = () => this.run();
         by("machine-text").oninput = () => this.readMachine();
         by("machine-text").onchange = () => this.run();
         by("machine-example").onclick = () => {
@@ -73,6 +74,7 @@ class Form {
                 const { facts, edges } = await runner.ask({ kind: "report" });
                 return [new Blob([reportPage(facts, edges)], { type: "text/html" }), "report.html"];
             },
+            plain: async () => [new Blob([await this.plain()], { type: "text/plain" }), "plain.nc"],
             png: async () => [await picture(), "passo.png"],
         })) {
             by(id).onclick = () => make().then(([blob, name]) => save(blob, name)).catch(error => this.say(error.message));
@@ -105,7 +107,8 @@ class Form {
     chosen() {
         const gcode = this.language === GCODE;
         by("clock").hidden = gcode;
-        by("machine-file").hidden = by("machine-told").hidden = !gcode;
+        by("plain").hidden = !gcode;
+        by("machine-file").hidden = by("tool-table").hidden = by("machine-told").hidden = !gcode;
         by("lines").rows = gcode ? 12 : 4;
     }
 
@@ -162,12 +165,13 @@ class Form {
 
     get state() {
         const { language, text: lines } = this, machine = by("machine-text").value;
-        const own = machine === this.example.machine ? {} : { machine };
+        const own = { ...(machine === this.example.machine ? {} : { machine }), ...(this.tools ? { tools: this.tools } : {}) };
         return { language, lines, clock: Number(by("clock").value), beside: by("beside").value, ...own };
     }
 
-    set state({ language, lines, clock, beside = "", machine = this.example.machine }) {
+    set state({ language, lines, clock, beside = "", machine = this.example.machine, tools = "" }) {
         this.putMachine(machine);
+        by("tools").value = tools;
         if (PROFILES.includes(beside)) by("beside").value = beside;
         this.put(lines, language === GCODE ? GCODE : CONSOLE);
         if (CLOCKS.includes(clock)) by("clock").value = clock;
@@ -184,7 +188,8 @@ class Form {
         }
     }
 
-    progress({ share, seconds }) {
+    progress({ share, seconds, doing }) {
+        if (doing) return this.say(doing);
         const bar = by("progress"), spent = (performance.now() - this.began) / 1000;
         if (share > 0) bar.value = share;
         else bar.removeAttribute("value");
@@ -193,14 +198,27 @@ class Form {
     }
 
     // The message that plays what is typed, with a profile instead of its own.
-    job(profile) {
+    job(profile, expand) {
         if (this.language === GCODE) {
             const { machine } = this, numbers = [...machine.numbers];
             if (profile) numbers[PROFILE] = PROFILES.indexOf(profile);
-            return { kind: "play", text: this.text, machine: { ...machine, numbers } };
+            return { kind: "play", text: this.text, machine: { ...machine, numbers }, tools: expand ? this.tools : null };
         }
         const text = profile ? this.text.replace(/profile=\w+/g, `profile=${profile}`) : this.text;
         return { kind: "type", lines: text.split("\n").map(line => line.trim()).filter(Boolean), hz: Number(by("clock").value) };
+    }
+
+    get tools() { return by("tools").value.trim() && by("tools").value; }
+    get expands() { return this.language === GCODE && (Boolean(this.tools) || Advice.needsExpanding(this.text, RULES.gcode)); }
+
+    // The program as plain lines.
+    async plain() {
+        const { text, machine, tools } = this;
+        if (!this.expands) return text;
+        await this.runner.python();
+        const { lines, wrong } = await this.runner.ask({ kind: "expand", text, machine, tools });
+        if (wrong) throw new BadValue(wrong);
+        return lines.map(line => `${line}\n`).join("");
     }
 
     // Cancels what runs, and plays what is typed; with another profile first, so that what is saved is the program's own.
@@ -212,9 +230,10 @@ class Form {
         this.busy(true);
         try {
             if (this.language === GCODE && this.refused) throw new BadValue(this.refused);
-            const profile = by("beside").value;
-            const other = profile ? await this.runner.ask(this.job(profile)) : null;
-            await this.show(await this.runner.ask(this.job()), other, profile);
+            const profile = by("beside").value, expand = this.expands;
+            if (expand) await this.runner.python();
+            const other = profile ? await this.runner.ask(this.job(profile, expand)) : null;
+            await this.show(await this.runner.ask(this.job("", expand)), other, profile);
         } catch (error) {
             clearMotion();
             by("answer").textContent = "";

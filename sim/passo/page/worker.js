@@ -2,9 +2,10 @@
 // The worker of the page: the core, its planner and its console as WebAssembly. It works in slices, between which it
 // hears the page, and answers with motions whose arrays move without being copied.
 //
-// In: {kind: "load", module, rules}, {kind: "play", text, machine}, {kind: "type", lines, hz}, {kind: "csv"}, {kind: "report"}, {kind: "cancel"}
-// Out: {kind: "ready"}, {kind: "progress", share, seconds}, {kind: "result", text, wrong, motion}, {kind: "csv", blob},
-//      {kind: "report", facts, edges}, {kind: "failure", text}
+// In: {kind: "load", module, rules}, {kind: "python", packed}, {kind: "play", text, machine, tools}, {kind: "type", lines, hz},
+//     {kind: "expand", text, machine, tools}, {kind: "csv"}, {kind: "report"}, {kind: "cancel"}
+// Out: {kind: "ready"}, {kind: "progress", share, seconds}, {kind: "progress", doing}, {kind: "result", text, wrong, motion},
+//      {kind: "expanded", said, wrong} or {.., lines, places}, {kind: "csv", blob}, {kind: "report", facts, edges}, {kind: "failure", text}
 "use strict";
 
 const AXES = 4, LISTS = 3;  // of the console's core; lists of edges per axis
@@ -59,8 +60,8 @@ class Core {
         return status;
     }
 
-    // What is wrong with the lines of a program, a sentence each.
-    refusals(text, machine) {
+    // What is wrong with the lines of a program, a sentence each; `at(n)`: where line n is from.
+    refusals(text, machine, at) {
         const lines = text.split(/\r\n|\r|\n/), count = this.c.refused();
         const told = this.said().split("\n").filter(Boolean), more = count - told.length;
         const advice = new Advice(this.rules, machine, word => {
@@ -70,24 +71,32 @@ class Core {
         });
         const wrong = told.map(line => {
             const [, number, error, code] = /^(\d+): ((?:error:(\d+))?.*)/.exec(line);
-            return `line ${number}: ${code ? advice.explain(Number(code), error, lines[number - 1]) : `${error}: passo run --surface MAP.csv simulates one`}`;
+            return `line ${at(Number(number))}: ${code ? advice.explain(Number(code), error, lines[number - 1]) : `${error}: passo run --surface MAP.csv simulates one`}`;
         });
         return more > 0 ? [...wrong, `and ${more} more lines`] : wrong;
     }
 
-    // Plays G-code on a machine after reset (struct web_machine). Returns what is wrong with it, and a motion or null.
-    async play(text, machine) {
+    // Plays G-code on a machine after reset (struct web_machine). Returns what it said, what is wrong with it, and a
+    // motion or null. `tools`: their table, with which the program is expanded; null: it is plain.
+    async play(text, machine, tools) {
+        if (tools === null) return this.playPlain(text, machine);
+        const { said, wrong, lines, places } = this.python.expand(text, machine, tools);
+        const played = wrong ? { wrong: [wrong], motion: null } : await this.playPlain(lines.join("\n"), machine, n => places[n - 1]);
+        return { ...played, text: said.length ? [...said, ...played.wrong].join("\n") : "" };
+    }
+
+    async playPlain(text, machine, at = n => n) {
         const { numbers, motors, clock_hz } = machine;
         const bytes = encoded(text);
         this.put(bytes, this.c.program(bytes.length));
         new Float64Array(this.c.memory.buffer, this.c.machine(), numbers.length).set(numbers);
         let status = this.c.begin();
-        if (this.c.refused()) return { text: "", wrong: this.refusals(text, machine), motion: null };
+        if (this.c.refused()) return { text: "", wrong: this.refusals(text, machine, at), motion: null };
         const whole = Math.max(1, this.c.length());
         if (status === GOES_ON) status = await this.through(() => this.c.go(TURNS), clock_hz, () => this.c.taken_bytes() / whole);
-        const said = this.said().trim(), at = this.c.taken();
-        if (status !== DONE && status !== GOES_ON) return { text: "", wrong: [at ? `line ${at}: ${said}` : said], motion: null };
-        return { text: "", wrong: [], motion: this.motion(motors, clock_hz, "mm", status === DONE ? "" : `canceled at line ${this.c.taken()}`) };
+        const said = this.said().trim(), taken = this.c.taken();
+        if (status !== DONE && status !== GOES_ON) return { text: "", wrong: [taken ? `line ${at(taken)}: ${said}` : said], motion: null };
+        return { text: "", wrong: [], motion: this.motion(motors, clock_hz, "mm", status === DONE ? "" : `canceled at line ${at(taken)}`) };
     }
 
     // Executes lines of the console on a core after reset. Returns what it said, and a motion or null.
@@ -204,8 +213,16 @@ const answers = {
         core.rules = rules;
         return { kind: "ready" };
     },
-    play: async ({ text, machine }) => ({ kind: "result", ...await core.play(text, machine) }),
+    async python({ packed }) {
+        core.python = await Python.load(packed, core.c);
+        return { kind: "ready" };
+    },
+    async play({ text, machine, tools }) {
+        if (tools !== null) postMessage({ kind: "progress", doing: "expanding the program" });
+        return { kind: "result", ...await core.play(text, machine, tools) };
+    },
     type: async ({ lines, hz }) => ({ kind: "result", ...await core.type(lines, hz) }),
+    expand: async ({ text, machine, tools }) => ({ kind: "expanded", ...core.python.expand(text, machine, tools) }),
     report: async () => ({ kind: "report", ...await reportOf(core) }),
     csv: async () => ({ kind: "csv", blob: csvOf(core) }),
 };
