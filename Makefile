@@ -120,9 +120,9 @@ machine: ## Build the machine of FILE=MACHINE.toml: bitstream, firmware, setting
 	@tools/setup.sh fpga firmware
 	@$(BIN)/passo make $(FILE)
 
-first-hour: ## Measure a first hour: a fresh clone, README and tutorial, a part in the browser; writes docs/first_hour.md (half an hour).
+first-hour: ## Measure a first hour: a fresh clone, README and tutorial, a part in the browser; writes docs/first_hour.md (half an hour; continues where it was; ONLY=rtl: a part of it).
 	@tools/setup.sh dev firmware web browser
-	@$(BIN)/python -m benchmarks.first_hour
+	@$(BIN)/python -m benchmarks.first_hour $(ONLY)
 
 whole-machine: ## Simulate examples/machines/motors.toml as a whole, from the sender to the drives, with its part (minutes).
 	@tools/setup.sh dev fpga firmware

@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: MIT
 """The numbers of a first hour with Passo, each with its goal; and that hour itself.
 
-    python -m benchmarks.first_hour [--short]
+    python -m benchmarks.first_hour [--short] [--again] [PART...]
 
-Writes the table of docs/first_hour.md; `--short` prints one of small cases, without the hour in a fresh clone
-(tools/first_hour.sh). Times are of the processor, but for the page and `make demo`. Needs tools/setup.sh dev
-firmware web browser, and the history of the repository for the times of an earlier commit.
+Writes the table of docs/first_hour.md. What was measured of a commit is kept, part by part, in
+build/first_hour/figures.json: a run that was interrupted continues where it was. `--again` measures all of it
+again; names of parts measure these alone, beside what is known of the others. `--short` prints a table of
+small cases, without the hour in a fresh clone (tools/first_hour.sh). Times are of the processor, but for
+`make demo`. Needs tools/setup.sh dev firmware web browser, and the history of the repository for the times of
+an earlier commit.
 """
 
 import argparse
@@ -15,12 +18,12 @@ import resource
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from passo.console import console, stages, table
-from passo.output import write_bytes, write_text
+from passo.output import make_folder, write_bytes, write_json, write_text
 from passo.toolchain import paths
 
 from benchmarks import page, play, preview
@@ -30,6 +33,7 @@ TABLE = re.compile(r"(<!-- report: make first-hour writes from here -->\n).*?(<!
 SCRIPT = paths.tools / "first_hour.sh"
 PLAY, RTL, CAMPAIGN = 8, 1.3, 3  # times as fast as in play.BEFORE, at least
 DEMO_SECONDS, DEMO_MEGABYTES, FIRMWARE_SECONDS = 120, 400, 20
+KEPT = paths.build / "first_hour" / "figures.json"
 SHORT = 20  # by which lines are fewer
 Tell = Callable[[str], None]
 
@@ -58,17 +62,13 @@ def most(what: str, goal: float, measured: float, unit: str, command: str) -> Fi
     return Figure(what, f"at most {goal:g} {unit}", f"{measured:.3g} {unit}", measured <= goal, command)
 
 
-def plays(tell: Tell, short: bool) -> Iterator[Figure]:
-    """Against an earlier commit, in one run."""
-    by_name = {case.name: case for case in play.CASES}
-    for name, goal in (("rosette", PLAY), ("rtl", RTL), ("campaign", CAMPAIGN)):
-        case = by_name[name]
-        if short:
-            case = play.Case(name, max(1, case.lines // SHORT), case.text)
-        (found,) = play.compare([case], tell=tell)
-        said = f"{found.ratio:.2f} times, {found.before:.1f} s and {found.now:.1f} s"
-        what = f"{case.text}, against {play.BEFORE}"
-        yield Figure(what, f"{goal:g} times as fast", said, found.ratio >= goal, "python -m benchmarks.play")
+def plays(tell: Tell, name: str, goal: float) -> Iterator[Figure]:
+    """A case against an earlier commit, in one run."""
+    (case,) = (case for case in play.CASES if case.name == name)
+    (found,) = play.compare([case], tell=tell)
+    said = f"{found.ratio:.2f} times, {found.before:.1f} s and {found.now:.1f} s"
+    what = f"{case.text}, against {play.BEFORE}"
+    yield Figure(what, f"{goal:g} times as fast", said, found.ratio >= goal, "python -m benchmarks.play")
 
 
 def previews(tell: Tell, short: bool) -> Iterator[Figure]:
@@ -94,8 +94,9 @@ def pages(tell: Tell, short: bool) -> Iterator[Figure]:
     """Of the page of `make web`."""
     command, lines = "python -m benchmarks.page", page.LINES // (SHORT if short else 1)
     found = page.measure(lines)
-    tell(f"page: {found.seconds:.1f} s, longest task {found.longest_task:.3f} s")
-    yield most(f"the page, {lines:,} lines of G-code", page.SECONDS_MOST, found.seconds, "s", command)
+    tell(f"page: {found.processor:.1f} s, longest task {found.longest_task:.3f} s")
+    what = f"the page, {lines:,} lines of G-code until all is drawn, processor"
+    yield most(what, page.SECONDS_MOST, found.processor, "s", command)
     what = "longest task of the page, processor"
     yield most(what, 1000 * page.BLOCKED_MOST, 1000 * found.longest_task, "ms", command)
 
@@ -146,21 +147,55 @@ def written(figures: list[Figure]) -> str:
     return TABLE.sub(lambda found: found[1] + text + found[2], PAGE.read_text(encoding="utf-8"))
 
 
-def measure(short: bool, tell: Tell) -> list[Figure]:
-    """All figures, in the order of the page."""
-    found = [*previews(tell, short), *pages(tell, short)]
-    if not short:
-        found += [*plays(tell, short), *firmware(tell), *hour(tell)]
-    return found
+# In the order of the page.
+PARTS: dict[str, Callable[[Tell], Iterator[Figure]]] = {
+    "preview": lambda tell: previews(tell, False),
+    "page": lambda tell: pages(tell, False),
+    "play": lambda tell: plays(tell, "rosette", PLAY),
+    "rtl": lambda tell: plays(tell, "rtl", RTL),
+    "campaign": lambda tell: plays(tell, "campaign", CAMPAIGN),
+    "firmware": firmware,
+    "hour": hour,
+}
+
+
+def commit() -> str:
+    """That of HEAD."""
+    asked = subprocess.run(["git", "rev-parse", "HEAD"], cwd=paths.root, capture_output=True, text=True)
+    return asked.stdout.strip()
+
+
+def measure(tell: Tell, chosen: Sequence[str] = (), again: bool = False) -> list[Figure]:
+    """All figures: of the chosen parts now, of the others as they were; see above."""
+    head = commit()
+    kept = json.loads(KEPT.read_text()) if KEPT.exists() else {}
+    for name, part in PARTS.items():
+        known = name in kept and kept[name]["commit"] == head
+        if name in chosen or not (chosen or (known and not again)):
+            kept[name] = {"commit": head, "figures": [asdict(figure) for figure in part(tell)]}
+            make_folder(KEPT.parent)
+            write_json(kept, KEPT)
+    return [Figure(**figure) for name in PARTS if name in kept for figure in kept[name]["figures"]]
+
+
+def measure_short(tell: Tell) -> list[Figure]:
+    """Preview and page with fewer lines."""
+    return [*previews(tell, True), *pages(tell, True)]
 
 
 def main() -> int:
     """Of the command."""
     options = argparse.ArgumentParser(prog="first_hour", description="Measure a first hour with Passo.")
     options.add_argument("--short", action="store_true", help="small cases, no fresh clone, no page")
-    short = options.parse_args().short
-    figures = measure(short, stages())
-    if not short:
+    options.add_argument("--again", action="store_true", help="forget what was measured")
+    options.add_argument("parts", nargs="*", metavar="PART", help="measure only these")
+    chosen = options.parse_args()
+    if unknown := set(chosen.parts) - set(PARTS):
+        options.error(f"no such part: {', '.join(sorted(unknown))}; there are {', '.join(PARTS)}")
+    if chosen.short:
+        figures = measure_short(stages())
+    else:
+        figures = measure(stages(), chosen.parts, chosen.again)
         write_text(PAGE, written(figures))
     rows = table("A first hour", *COLUMNS)
     for figure in figures:

@@ -2,6 +2,8 @@
 """Plays a case with the sources on PYTHONPATH, and prints hashes of all edges and steps; see play.py.
 
 python benchmarks/play_case.py CASE LINES MACHINE.toml FOLDER
+
+A case imports what it needs: the rest takes longer to load than some of them to play.
 """
 
 import hashlib
@@ -13,12 +15,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from passo import campaign_play, cli, part_command
-from passo.campaign_moves import draw
-from passo.driver import DriverError
-from passo.path import PathAxis, PathSettings
-
-from tests.helpers.path_player import play
 
 RADIUS, WAVES = 30, ((12, 5.03), (4, 17.0))  # mm, of the rosette, and waves per turn
 SLOW = 1500  # mm/min
@@ -57,6 +53,10 @@ class Made:
 
 def run(text: str, machine: Path, folder: Path, engine: str = "model") -> Made:
     """`passo run`."""
+    from passo import cli
+    from passo import part_command as command
+
+    part_command: Any = command  # of which a function is replaced
     played: list[Any] = []
     plays = part_command.play_part
 
@@ -75,6 +75,11 @@ def run(text: str, machine: Path, folder: Path, engine: str = "model") -> Made:
 
 def paths(lines: int, _machine: Path, _folder: Path) -> Made:
     """Paths of the tests: polls at 1800 Hz, and corners of all kinds."""
+    from passo.driver import DriverError
+    from passo.path import PathAxis, PathSettings
+
+    from tests.helpers.path_player import play
+
     settings = PathSettings((PathAxis(), PathAxis(), PathAxis(400, 12, 100)), polls=1800)
     made: list[Any] = []
     steps: list[np.ndarray] = []
@@ -94,6 +99,9 @@ def paths(lines: int, _machine: Path, _folder: Path) -> Made:
 
 def campaign(lines: int, _machine: Path, _folder: Path) -> Made:
     """Cases of a campaign: refusals, faults and counts of each."""
+    from passo import campaign_play
+    from passo.campaign_moves import draw
+
     outcomes = (campaign_play.play(draw(1, number), "model") for number in range(lines))
     made = [(own.refused.partition(":")[0], own.fault, sorted(own.counts.items())) for own in outcomes]
     return Made(made, [(bool(refused), counts) for refused, _, counts in made])

@@ -2,6 +2,7 @@
 """The figures of a first hour, with small cases; `make first-hour` has the fresh clone and the whole ones."""
 
 import subprocess
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -17,10 +18,45 @@ def test_the_short_form(monkeypatch: pytest.MonkeyPatch) -> None:
     """Preview and page with a twentieth of the lines, well within their goals; it says so."""
     monkeypatch.setattr(page, "LINES", 4000)
     told: list[str] = []
-    figures = first_hour.measure(True, told.append)
+    figures = first_hour.measure_short(told.append)
     assert [figure.command.split(".")[-1] for figure in figures] == ["preview", "preview", "page", "page"]
     assert all(figure.met for figure in figures[:3]), figures
     assert len(told) == 2 and "5,000 lines" in figures[0].what
+
+
+def test_a_run_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Part by part; another commit measures all of it, chosen parts only these."""
+    monkeypatch.setattr(first_hour, "KEPT", tmp_path / "kept" / "figures.json")
+    head, broken, ran = "a", "rtl", list[str]()
+    monkeypatch.setattr(first_hour, "commit", lambda: head)
+
+    def part(name: str) -> Callable[[first_hour.Tell], Iterator[Figure]]:
+        def run(_: first_hour.Tell) -> Iterator[Figure]:
+            ran.append(name)
+            if name == broken:
+                raise KeyboardInterrupt
+            yield Figure(name, "1", str(len(ran)), True, "make")
+
+        return run
+
+    monkeypatch.setattr(first_hour, "PARTS", {name: part(name) for name in ("page", "rtl", "hour")})
+    with pytest.raises(KeyboardInterrupt):
+        first_hour.measure(print)
+    broken = ""
+    found = first_hour.measure(print)
+    assert ran == ["page", "rtl", "rtl", "hour"] and [figure.what for figure in found] == [
+        "page",
+        "rtl",
+        "hour",
+    ]
+    assert first_hour.measure(print) == found and len(ran) == 4
+    head = "b"
+    first_hour.measure(print, ["rtl"])
+    assert ran[4:] == ["rtl"]
+    first_hour.measure(print)
+    assert ran[5:] == ["page", "hour"]
+    first_hour.measure(print, again=True)
+    assert ran[7:] == ["page", "rtl", "hour"]
 
 
 def test_figures_and_their_goals() -> None:

@@ -4,8 +4,11 @@
 import json
 import os
 import signal
+import sys
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -14,6 +17,10 @@ from passo import cli, console
 from passo.campaign import Campaign, carry_out
 from passo.campaign_cluster import local_cluster
 from passo.engine import Engine
+
+from verify.mutants import engine_judge
+from verify.mutants import run as mutants
+from verify.mutants.fates import Fate
 
 
 class Clock:
@@ -53,6 +60,46 @@ def test_a_count_with_an_estimate(clock: Clock) -> None:
     assert estimate.counted(400) == "400 of 1,200, 1:00 left"
     clock.now += 60
     assert estimate.counted(1200) == "1,200 of 1,200"
+
+
+def test_the_run_of_the_mutants(
+    clock: Clock, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Of its parts, as it ends them."""
+
+    def play(*_: Any) -> list[Any]:
+        clock.now += 60
+        return []
+
+    for name in ("run_core", "run_c"):
+        monkeypatch.setattr(mutants, name, play)
+    monkeypatch.setattr(mutants, "CORES", mutants.CORES[:2])
+    monkeypatch.setattr(mutants, "write", lambda *_: None)
+    monkeypatch.setattr(sys, "argv", ["run"])
+    with pytest.raises(SystemExit, match="False"):
+        mutants.main()
+    said = capsys.readouterr().out
+    names = (*(core.name for core in mutants.CORES), "C")
+    for name, counted in zip(names, ("1 of 3, 2:00 left", "2 of 3, 1:00 left", "3 of 3"), strict=True):
+        assert f" {name}: done, {counted}\n" in said
+
+
+def test_a_judge_of_mutants(clock: Clock, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every ten, with an estimate."""
+
+    def broken(*_: Any) -> str:
+        clock.now += 2
+        return "" if clock.now % 4 else "a fault"
+
+    monkeypatch.setattr(engine_judge, "broken", broken)
+    monkeypatch.setattr(engine_judge, "_says", lambda *_: "")
+    told: list[str] = []
+    fates: Any = SimpleNamespace(get=cache(lambda name: Fate(tried=[])), save=lambda: None)
+    waiting: Any = [SimpleNamespace(name=str(number), number=number) for number in range(20)]
+    check: Any = SimpleNamespace(name="check", judge="judge", case="case", tries=lambda _: True)
+    core: Any = SimpleNamespace(name="core")
+    engine_judge.judge(core, waiting, fates, Path(), 1, told.append, check)
+    assert told == ["core: check: 10 of 20, 0:20 left; 5 live", "core: check: 20 of 20; 10 live"]
 
 
 @pytest.mark.parametrize(("total", "left"), [(None, ""), (4.0, ", 2:50 left")])

@@ -7,6 +7,7 @@
  *
  * Two groups of units need not be quiet, since they mostly act on each other: the link with the SPI slave,
  * and a running profile with its axes. They are executed by their own functions, while the rest is skipped.
+ * While the link acts on the rest, but not on a channel, these are skipped if they are quiet.
  */
 #include "passo_advance.h"
 
@@ -106,13 +107,20 @@ static uint64_t rest_quiet(
 	return clocks;
 }
 
-static void skip_rest(struct passo_core *core, unsigned moving, uint64_t clocks)
+/* The channels, too, note the register in the address of the bus. */
+static void skip_channels(struct passo_core *core, unsigned moving, uint64_t clocks, uint16_t address)
+{
+	for (unsigned i = 0; i < core->parameters.channels; i++) {
+		core->channel[i].written_register = (uint8_t)((uint8_t)address - PASSO_CHANNEL_AXIS_BASE);
+		if (i != moving)
+			passo_advance_channel_skip(&core->channel[i], clocks);
+	}
+}
+
+static void skip_rest(struct passo_core *core, uint64_t clocks)
 {
 	const uint32_t tick = 1u << core->parameters.tick_log2;
 
-	for (unsigned i = 0; i < core->parameters.channels; i++)
-		if (i != moving)
-			passo_advance_channel_skip(&core->channel[i], clocks);
 	core->slew_tick = (core->slew_count + clocks - 1u) % tick == tick - 1u;
 	core->slew_count = (uint32_t)((core->slew_count + clocks) % tick);
 	/* a skipped slew tick may still be in progress */
@@ -125,20 +133,58 @@ static void skip_rest(struct passo_core *core, unsigned moving, uint64_t clocks)
 	core->tables.slot = (uint8_t)((core->tables.slot + clocks) % (2u * core->parameters.channels));
 }
 
+/* Whether the link does nothing in a channel: it answers, reads, or writes to another register. */
+static bool spares_channels(const struct passo_core *core)
+{
+	const struct passo_bus *bus = &core->link.bus;
+	const unsigned block = (unsigned)bus->address >> 8;
+
+	return !bus->frame && !passo_spi_wires(&core->spi).frame_start
+	    && !((bus->check || bus->write) && block >= 1u && block <= core->parameters.channels);
+}
+
+/* A clock in which the link acts on the rest of the core. */
+static uint64_t clock_bus(
+    struct passo_core *core, const struct passo_inputs *inputs, struct passo_shift *shift)
+{
+	const struct passo_parameters *parameters = &core->parameters;
+	const uint16_t address = core->link.bus.address;
+	struct passo_inputs pins = *inputs;
+
+	if (parameters->inputs + parameters->encoders + parameters->outputs != 0u || !spares_channels(core)
+	    || rest_quiet(core, inputs, parameters->channels, 1) == 0u)
+		return 0;
+	if (shift) {
+		passo_shift_pins(shift, &pins, core->spi.miso);
+		shift->clock++;
+	}
+	passo_core_clock_bus(core, &pins);
+	skip_channels(core, parameters->channels, 1, address);
+	return 1;
+}
+
 /* The link side goes first: how far is known only then. If the channel does not follow it goes back. */
 static uint64_t advance(struct passo_core *core, const struct passo_inputs *inputs, struct passo_shift *shift,
     uint64_t limit, bool *changed)
 {
 	const unsigned moving = moving_channel(core);
+	const uint16_t address = core->link.bus.address;
 	uint64_t clocks;
 
-	if (!pins_quiet(core, inputs) || !passo_advance_link_is_alone(core))
+	if (!pins_quiet(core, inputs))
 		return 0;
+	if (!passo_advance_link_is_alone(core))
+		return clock_bus(core, inputs, shift);
 	clocks = rest_quiet(core, inputs, moving, limit);
 	if (clocks == 0u)
 		return 0;
+	const bool rests = !shift && passo_advance_link_rests(core, inputs);
 	if (moving == core->parameters.channels) {
-		clocks = passo_advance_link(core, inputs, shift, clocks);
+		clocks = rests ? clocks : passo_advance_link(core, inputs, shift, clocks);
+	} else if (rests) {
+		const struct passo_channel_inputs channel_inputs = inputs_of(core, moving, inputs);
+
+		clocks = passo_advance_run(&core->channel[moving], &channel_inputs, clocks, changed);
 	} else {
 		const struct before before = look_back(core, shift);
 		const struct passo_channel_inputs channel_inputs = inputs_of(core, moving, inputs);
@@ -150,8 +196,10 @@ static uint64_t advance(struct passo_core *core, const struct passo_inputs *inpu
 			passo_advance_link(core, inputs, shift, clocks);
 		}
 	}
-	if (clocks != 0u)
-		skip_rest(core, moving, clocks);
+	if (clocks != 0u) {
+		skip_channels(core, moving, clocks, address);
+		skip_rest(core, clocks);
+	}
 	return clocks;
 }
 

@@ -48,6 +48,10 @@ uint64_t passo_advance_run(
 /* Whether link and SPI slave only act on each other in the next clock: no strobe of the bus, no answer to
  * one, and no snapshot. */
 bool passo_advance_link_is_alone(const struct passo_core *core);
+/* A clock of all units but the channels. */
+void passo_core_clock_bus(struct passo_core *core, const struct passo_inputs *inputs);
+/* Whether they do nothing at all until a pin or the status changes. */
+bool passo_advance_link_rests(const struct passo_core *core, const struct passo_inputs *inputs);
 /* Executes at most `limit` clocks of the link and the SPI slave, up to one in which the link acts on the rest
  * of the core. Returns the clocks. `shift`: the present exchange, or null: the pins are constant. */
 uint64_t passo_advance_link(

@@ -4,6 +4,8 @@
  */
 #include "passo_advance.h"
 
+#include <stddef.h>
+
 #include "passo_registers_core.h"
 
 bool passo_advance_link_is_alone(const struct passo_core *core)
@@ -16,12 +18,9 @@ bool passo_advance_link_is_alone(const struct passo_core *core)
 	    && !passo_spi_wires(&core->spi).frame_start;
 }
 
-/* The slave in the next clock, which may have an edge of SCLK. */
-static void clock_spi(
-    struct passo_core *core, struct passo_inputs *pins, const struct passo_shift *shift, uint32_t reply_word)
+/* The slave in the next clock, in which the pins may change. */
+static void clock_spi(struct passo_core *core, const struct passo_inputs *pins, uint32_t reply_word)
 {
-	if (shift)
-		passo_shift_pins(shift, pins, core->spi.miso);
 	passo_spi_clock(
 	    &core->spi, core->inputs.spi_sclk, pins->spi_sclk, pins->spi_mosi, pins->spi_cs_n, reply_word);
 	core->inputs.spi_sclk = pins->spi_sclk;
@@ -41,7 +40,9 @@ static void clock_both(struct passo_core *core, struct passo_inputs *pins, struc
 	passo_link_clock(&core->link, wires);
 	if (core->link.last_sequence != sequence)
 		wires->status = passo_registers_status(core);
-	clock_spi(core, pins, shift, reply_word);
+	if (shift)
+		passo_shift_pins(shift, pins, core->spi.miso);
+	clock_spi(core, pins, reply_word);
 	if (shift)
 		shift->clock++;
 }
@@ -66,14 +67,21 @@ static uint64_t quiet(const struct passo_core *core, const struct passo_inputs *
 static void skip(
     struct passo_core *core, struct passo_inputs *pins, struct passo_shift *shift, uint64_t clocks)
 {
-	const uint64_t end = shift ? shift->clock + clocks : 0u;
-
 	passo_link_skip(&core->link, clocks);
-	while (shift && shift->clock < end) {
-		if (shift->clock % shift->half_period == 0u)
-			clock_spi(core, pins, shift, core->link.reply_word);
-		shift->clock = passo_advance_least(shift->clock + passo_shift_constant(shift), end);
+	if (!shift)
+		return;
+	const uint64_t begin = shift->clock + shift->half_period - 1u;
+	const uint64_t end = (begin + clocks) / shift->half_period;
+	for (uint64_t level = begin / shift->half_period; level < end; level++) {
+		passo_shift_to(shift, level, true, pins, core->spi.miso);
+		clock_spi(core, pins, core->link.reply_word);
 	}
+	shift->clock += clocks;
+}
+
+bool passo_advance_link_rests(const struct passo_core *core, const struct passo_inputs *inputs)
+{
+	return quiet(core, inputs, NULL, passo_registers_status(core)) == UINT64_MAX;
 }
 
 uint64_t passo_advance_link(

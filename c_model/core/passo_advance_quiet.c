@@ -37,14 +37,12 @@ static bool ramps_settled(const struct passo_ramp_queue *queue, const struct pas
 	    && queue->valid == (queue->write_ramp != queue->read_ramp);
 }
 
-static bool commands_settled(const struct passo_channel *channel, const struct passo_bus *bus)
+static bool commands_settled(const struct passo_channel *channel)
 {
 	const struct passo_channel_registers *registers = &channel->registers;
-	const uint8_t in_axes = (uint8_t)((uint8_t)bus->address - PASSO_CHANNEL_AXIS_BASE);
 
 	return !registers->command_stop && !registers->command_abort && !registers->command_clear
-	    && !registers->command_zero && !registers->drain_velocity_written && !channel->writes_axis
-	    && channel->written_register == in_axes;
+	    && !registers->command_zero && !registers->drain_velocity_written && !channel->writes_axis;
 }
 
 bool passo_advance_slots_empty(const struct passo_channel *channel)
@@ -164,7 +162,7 @@ uint64_t passo_advance_surroundings_quiet(
 	const bool moving = channel->motion.state == PASSO_STATE_RUN;
 
 	if (!motion_settled(channel, inputs) || !rest_settled(channel)
-	    || !outputs_settled(channel, inputs->bus) || !commands_settled(channel, inputs->bus)
+	    || !outputs_settled(channel, inputs->bus) || !commands_settled(channel)
 	    || line->load_start || line->load_start_q || line->underrun
 	    || !ramps_settled(&channel->ramp_queue, inputs->parameters)
 	    || !lines_settled(channel, inputs->parameters) || !passo_encoders_quiet(channel, inputs))

@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "passo_advance.h"
 #include "passo_registers_core.h"
 #include "passo_rules.h"
 
@@ -162,7 +163,8 @@ bool passo_core_any_moving(const struct passo_core *core)
 	return false;
 }
 
-static void clock_all(struct passo_core *core, const struct passo_inputs *inputs)
+/* A clock of all units but the channels, if these are `still`. */
+static void clock_all(struct passo_core *core, const struct passo_inputs *inputs, bool still)
 {
 	const struct passo_parameters *parameters = &core->parameters;
 	const struct passo_link_wires link_wires = {
@@ -195,7 +197,7 @@ static void clock_all(struct passo_core *core, const struct passo_inputs *inputs
 
 	core->response = respond(core, &rule);
 	passo_registers_clock(core);
-	for (unsigned i = 0; i < parameters->channels; i++) {
+	for (unsigned i = 0; i < parameters->channels && !still; i++) {
 		channel_inputs.run = (registers.run >> i & 1u) != 0u;
 		channel_inputs.wait_sync = (registers.wait_sync >> i & 1u) != 0u;
 		passo_core_take_pins(core, i, inputs, &channel_inputs);
@@ -240,7 +242,7 @@ static void clock_in_reset(struct passo_core *core, const struct passo_inputs *i
 {
 	const struct passo_core before = *core;
 
-	clock_all(core, inputs);
+	clock_all(core, inputs, false);
 	restart(core, &before);
 }
 
@@ -249,8 +251,14 @@ void passo_core_clock(struct passo_core *core, const struct passo_inputs *inputs
 	if (inputs->rst)
 		clock_in_reset(core, inputs);
 	else
-		clock_all(core, inputs);
+		clock_all(core, inputs, false);
 	passo_core_gather_outputs(core);
+}
+
+void passo_core_clock_bus(struct passo_core *core, const struct passo_inputs *inputs)
+{
+	clock_all(core, inputs, true);
+	core->outputs.spi_miso = core->spi.miso;
 }
 
 const struct passo_outputs *passo_core_outputs(const struct passo_core *core)

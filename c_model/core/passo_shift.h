@@ -33,18 +33,26 @@ static inline uint64_t passo_shift_constant(const struct passo_shift *shift)
 	return shift->half_period - shift->clock % shift->half_period;
 }
 
-/* Sets SCLK and MOSI to their levels in the next clock. A rising edge samples MISO, whose level is `miso`. */
-static inline void passo_shift_pins(const struct passo_shift *shift, struct passo_inputs *inputs, bool miso)
+/* Sets SCLK and MOSI to a level, of which there are two for each bit. A rising edge samples MISO, which is
+ * `miso`. */
+static inline void passo_shift_to(
+    const struct passo_shift *shift, uint64_t level, bool edge, struct passo_inputs *inputs, bool miso)
 {
-	const uint64_t level = shift->clock / shift->half_period;
 	const uint64_t bit = level / 2u, word = bit / 32u;
-	const bool edge = shift->clock % shift->half_period == 0u;
 
 	inputs->spi_sclk = level % 2u != 0u;
 	if (!inputs->spi_sclk)
 		inputs->spi_mosi = (shift->mosi[word] >> (31u - bit % 32u) & 1u) != 0u;
 	else if (edge)
 		shift->miso[word] = shift->miso[word] << 1 | (miso ? 1u : 0u);
+}
+
+/* The same for the level of the next clock. */
+static inline void passo_shift_pins(const struct passo_shift *shift, struct passo_inputs *inputs, bool miso)
+{
+	const uint64_t level = shift->clock / shift->half_period;
+
+	passo_shift_to(shift, level, shift->clock == level * shift->half_period, inputs, miso);
 }
 
 #endif

@@ -2,7 +2,6 @@
 """The job of a worker: plays a case of a campaign and checks it at the pins."""
 
 import gc
-import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable
@@ -14,10 +13,12 @@ from passo.campaign_moves import Case, draw, to_toml
 from passo.campaign_refusals import acceptance_fault, outruns_the_link, refusal_fault
 from passo.engine import DifferenceError
 from passo.move_file import parse_channels
+from passo.move_forms import Points
 from passo.moves import Channels, MoveFileError
 from passo.plan import PlanError, plan_channels
 from passo.pulse_judge import Fault, faults
 from passo.run import Run, Steps, execute_channels, open_engine, parameters_of
+from passo.shape import parse_table, read_table, table_text
 
 ENGINES = {"model": "model", "rtl": "both"}  # of a campaign; as `passo run` calls them
 CLOCKS_MAX = 1 << 25  # longer than any move that is drawn
@@ -37,24 +38,19 @@ Player = Callable[[Case, str], Outcome]
 
 
 def play(case: Case, engine: str) -> Outcome:
-    """Read the text of the case as that of a file, plan and play it; an exception is a fault, too."""
-    path = Path(_folder().name) / f"{case.name}.toml"
-    table = case.write_table(path.parent)  # the text stays in memory: a file takes longer than to read it
+    """Read the texts of the case as those of files, plan and play it; an exception is a fault, too."""
+    table = table_text(case.table) if case.table else ""
+
+    def read(path: Path) -> Points:
+        return parse_table(table, path)
+
     try:
-        return play_text(to_toml(case.data), path, engine)
+        # the texts stay in memory: files take longer than to read them
+        return play_text(to_toml(case.data), Path(f"{case.name}.toml"), engine, read)
     except DifferenceError as error:
         return Outcome(fault=Fault("difference", str(error)))
     except Exception as error:
         return Outcome(fault=Fault(type(error).__name__, str(error).partition("\n")[0]))
-    finally:
-        if table:
-            table.unlink()
-
-
-@cache
-def _folder() -> tempfile.TemporaryDirectory[str]:
-    """One for each process: to remove a folder takes almost as long as to play a move."""
-    return tempfile.TemporaryDirectory(prefix="passo_campaign_")
 
 
 def play_file(path: Path, engine: str) -> Outcome:
@@ -62,11 +58,11 @@ def play_file(path: Path, engine: str) -> Outcome:
     return play_text(path.read_text(encoding="utf-8"), path, engine)
 
 
-def play_text(text: str, path: Path, engine: str) -> Outcome:
-    """The same for the text of a file."""
+def play_text(text: str, path: Path, engine: str, read: Callable[[Path], Points] = read_table) -> Outcome:
+    """The same for the text of a file; `read` reads the tables that it names."""
     channels = None
     try:
-        channels = parse_channels(text, path)
+        channels = parse_channels(text, path, read)
         parameters = parameters_of(channels)
         plans = plan_channels(channels, parameters)
     except MoveFileError as error:

@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from passo.move_forms import SHAPED, USER
+from passo.move_forms import SHAPED, USER, Points
 from passo.plan import ALPHA_ONE, ALPHA_RESET, Q48, Plan
 from passo.run import Run
 from passo.shape import ONE, POINTS
@@ -51,9 +51,21 @@ def _table(u: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def shapes_of(plan: Plan) -> tuple[Shape, ...]:
     """The shapes that the ramps of a plan use, indexed by enum passo_shape."""
-    sigmoid = partial(_sigmoid, a=(plan.c.sigmoid_alpha or ALPHA_RESET) / ALPHA_ONE)
-    if plan.move.profile in (USER, SHAPED):
-        sigmoid = partial(_table, points=np.array([*plan.table, ONE]) / ONE)
+    return shapes(*told_of(plan))
+
+
+def told_of(plan: Plan) -> tuple[int, Points]:
+    """What tells them: alpha of the sigmoid in units of 1/4096, and the points of a table in its place, or
+    none."""
+    own = plan.move.profile in (USER, SHAPED)
+    return plan.c.sigmoid_alpha or ALPHA_RESET, plan.table if own else ()
+
+
+def shapes(alpha: int, table: Points) -> tuple[Shape, ...]:
+    """The shapes for what `told_of` returns."""
+    sigmoid = partial(_sigmoid, a=alpha / ALPHA_ONE)
+    if table:
+        sigmoid = partial(_table, points=np.array([*table, ONE]) / ONE)
     return _linear, _cosine, sigmoid, _ease
 
 

@@ -2,7 +2,6 @@
 """The engines that execute the core: the C model and the Verilated RTL; both in lockstep: pair_engine.py."""
 
 from collections.abc import Sequence
-from functools import cache
 from pathlib import Path
 from typing import Any, Self
 
@@ -16,14 +15,7 @@ from passo.pins import INPUTS, OUTPUTS
 # Pin levels after each clock on which an output pin changes; clock 1 is the first one after reset. A pin has
 # a bit per axis, channel * axes + axis, or per channel.
 EVENT = np.dtype([("clock", "u8"), *((pin.name, "u8") for pin in OUTPUTS)])
-EVENTS_PER_DRAIN = 65536
 NUMBERS = {pin.name: number for number, pin in enumerate(INPUTS)}
-
-
-@cache
-def _untouched() -> Any:
-    """Allocates without clearing: a short motion uses little of the megabytes for its events."""
-    return ffi().new_allocator(should_clear_after_alloc=False)
 
 
 def moves_of(events: np.ndarray, bit: int) -> np.ndarray:
@@ -84,7 +76,6 @@ class Engine(Closed):
         config = ffi().new("struct passo_engine_config *")
         config.core = vars(parameters)
         config.clock_hz, config.spi_half_period, config.every_clock = clock_hz, spi_half_period, every_clock
-        self._events = _untouched()("struct passo_pin_event[]", EVENTS_PER_DRAIN)
         self._engine = self._c.passo_engine_create(config)
         if self._engine == ffi().NULL:
             raise RuntimeError(f"{library} does not support {parameters}")
@@ -166,14 +157,11 @@ class Engine(Closed):
 
     def drain(self) -> np.ndarray:
         """The pin events (EVENT) since the last call."""
-        chunks = [self._drain_some()]
-        while len(chunks[-1]) == EVENTS_PER_DRAIN:
-            chunks.append(self._drain_some())
-        return chunks[0] if len(chunks) == 1 else np.concatenate(chunks)
-
-    def _drain_some(self) -> np.ndarray:
-        count = self._c.passo_engine_drain(self._engine, self._events, EVENTS_PER_DRAIN)
-        return np.frombuffer(ffi().buffer(self._events), EVENT, count).copy()
+        events = np.empty(self.waiting, EVENT)
+        if len(events):
+            into = ffi().from_buffer("struct passo_pin_event[]", events)
+            self._c.passo_engine_drain(self._engine, into, len(events))
+        return events
 
     def open_waves(self, path: Path, begin: int, end: int) -> None:
         """Record all signals of the core to an FST file; requires an engine built with waves.

@@ -4,11 +4,12 @@
 import math
 import re
 import tomllib
+from collections.abc import Callable
 from dataclasses import fields
 from fractions import Fraction
 from pathlib import Path
 
-from passo.move_forms import FORMS, TASKS, Form
+from passo.move_forms import FORMS, TASKS, Form, Points
 from passo.move_keys import check_rules, read_key
 from passo.moves import (
     CHANNELS_MAX,
@@ -76,8 +77,8 @@ def read_channels(path: Path) -> Channels:
     return parse_channels(text, path)
 
 
-def parse_channels(text: str, path: Path) -> Channels:
-    """The same of a text, which is or could be in a file; tables that it names are beside that."""
+def parse_channels(text: str, path: Path, read: Callable[[Path], Points] = read_table) -> Channels:
+    """The same of a text, which is or could be in a file; `read` reads the tables that it names."""
     try:
         data = tomllib.loads(text, parse_float=Written)
     except RecursionError:
@@ -91,12 +92,12 @@ def parse_channels(text: str, path: Path) -> Channels:
             ) from None
         raise MoveFileError(f"{path}: {toml_error(text, error)}") from None
     try:
-        return _file(path, data)
+        return _file(path, data, read)
     except BadValueError as error:
         raise MoveFileError(f"{path}: {error}") from None
 
 
-def _file(path: Path, data: Table) -> Channels:
+def _file(path: Path, data: Table, read: Callable[[Path], Points]) -> Channels:
     check_known(data, FILE_KEYS)
     clock_hz = read_clock_hz(data)
     together = "together" in data and read_flag(data, "together")
@@ -107,7 +108,7 @@ def _file(path: Path, data: Table) -> Channels:
         raise BadValueError("no moves: [[move]] is missing")
     queues: dict[int, dict[int, Move]] = {}  # by channel, by number
     for number, table in enumerate(tables, 1):
-        move = within(f"move {number}", lambda table=table: _move(table, path.parent, clock_hz))
+        move = within(f"move {number}", lambda table=table: _move(table, path.parent, clock_hz, read))
         queue = queues.setdefault(move.channel, {})
         first = next(iter(queue), number)
         queue[number] = move
@@ -158,14 +159,14 @@ def read_pins(table: Table, clock_hz: int, others: tuple[str, ...] = ()) -> PinT
     return PinTiming(**clocks)
 
 
-def _move(table: Table, folder: Path, clock_hz: int) -> Move:
+def _move(table: Table, folder: Path, clock_hz: int, read: Callable[[Path], Points]) -> Move:
     table = {key: value for key, value in table.items() if key != OUTPUT}
     form = _form(table)
     values = {key.name: read_key(table, key, clock_hz) for key in form.keys}
     check_rules(form, table)
     if values.get("table"):
         try:
-            values["table"] = read_table(folder / values["table"])
+            values["table"] = read(folder / values["table"])
         except ShapeError as error:
             raise BadValueError(f"table: {error}") from None
     return (MOVES | TASK_TYPES)[form.name](**values)

@@ -23,7 +23,7 @@ class MovingChannel:
     plans: list[Plan]
     driver: Driver
     source: Source = field(init=False)
-    pins: list[np.ndarray] = field(default_factory=list)
+    parts: list[np.ndarray] = field(default_factory=list)  # of its pins
     moves: bool = True
 
     def __post_init__(self) -> None:
@@ -45,13 +45,21 @@ class MovingChannel:
 
     def collect(self, events: np.ndarray) -> None:
         """Store its part of the pin events."""
+        if not len(events):
+            return
         pins = self.driver.engine.parameters.axes
         compact = np.empty(len(events), PINS)
         compact["clock"] = events["clock"]
         for name in ("step", "dir"):
             compact[name] = events[name] >> np.uint64(self.file.channel * pins) & np.uint64((1 << pins) - 1)
         compact["running"] = events["running"] >> np.uint32(self.file.channel) & np.uint32(1)
-        self.pins.append(compact)
+        self.parts.append(compact)
+
+    @property
+    def pins(self) -> np.ndarray:
+        """The pins (PINS) at all events so far."""
+        # as bytes: to join records, numpy looks at each of their fields
+        return np.concatenate([part.view(np.uint8) for part in self.parts]).view(PINS)
 
     def poll(self) -> None:
         """Poll the driver while it has something to do."""

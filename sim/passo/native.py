@@ -2,12 +2,12 @@
 """Access to the C code by cffi, with the declarations of its own headers."""
 
 from functools import cache
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from cffi import FFI
-
 from passo.build import console_library, cpu_library, planner_library, preview_library
+from passo.cache import cached
 from passo.compiler import declarations
 from passo.toolchain import paths
 
@@ -52,6 +52,7 @@ HEADERS = (
     paths.engine / "passo_engine.h",
     paths.engine / "passo_terminal.h",
     paths.engine / "passo_judge.h",
+    paths.engine / "passo_pulses.h",
     paths.engine / "passo_preview.h",
     paths.engine / "passo_csv.h",
     paths.engine / "passo_rests.h",
@@ -60,12 +61,25 @@ HEADERS = (
 )
 
 
+DECLARED = "passo_declarations.py"  # by cffi, which takes longer to parse than to load them
+
+
 @cache
-def ffi() -> FFI:
-    """All types and functions of the C code."""
+def ffi() -> Any:
+    """All types and functions of the C code, a `cffi.FFI`."""
+    path = cached("declarations", HEADERS, [f"cffi {version('cffi')}"], _declare) / DECLARED
+    names: dict[str, Any] = {}
+    exec(compile(path.read_text(), str(path), "exec"), names)
+    return names["ffi"]
+
+
+def _declare(folder: Path) -> None:
+    from cffi import FFI
+
     made = FFI()
     made.cdef(declarations(HEADERS))
-    return made
+    made.set_source(Path(DECLARED).stem, None, compiler_verbose=False)
+    made.emit_python_code(str(folder / DECLARED))
 
 
 @cache

@@ -4,27 +4,25 @@
 The guarantees are those of docs/architecture.md, checked at the pins without knowledge of the core.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
-from passo.curve import shapes_of
+from passo.curve import shapes, told_of
+from passo.move_forms import Points
+from passo.native import ffi, planner
 from passo.plan import Q48, Plan
 from passo.run import Run, Steps
 from passo.shape import POINTS
 
-EARLY = 0.25  # substeps: the rounding to clocks is centered at full speed
-LATE = 1.25  # of any axis; the steps of the leading one are at whole substeps:
-LATE_LEADING = 0.25
-LATENCY = 8  # clocks from the substep to the pin
 ROUNDING = 2.0**-17  # of a shape: half a unit of its table
 DISTANCE = 0.25  # substeps by which a plan may miss its line
 FAR = 1e9  # clocks
+ENDLESS = (1 << 63) - 1  # clocks of a pulse that does not end
 
 GRID = np.arange(POINTS + 1) / POINTS  # the points of a table
-
-Curve = tuple[np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -49,82 +47,64 @@ def faults(run: Run, steps: list[Steps] | None = None) -> list[Fault]:
         Fault(next((kind for word, kind in KINDS.items() if word in text), "problem"), text)
         for text in run.problems(steps)
     ]
-    return found or list(_pulse_faults(run, steps))
+    return found or _pulse_faults(run)
 
 
-def _pulse_faults(run: Run, steps: list[Steps]) -> Iterator[Fault]:
-    places, pins = [_Place.of(plan) for plan in run.plans], _Pins.of(run)
-    for axis, own in enumerate(steps):
-        yield from timing_faults(run, axis, own, pins)
-        yield from curve_faults(run, axis, own, places)
+def _pulse_faults(run: Run) -> list[Fault]:
+    """Those of sim/engine/passo_pulses.h, axis by axis."""
+    c, pins = planner(), run.file.pins
+    rows = np.ascontiguousarray(run.pins)
+    curves = [expected(plan) for plan in run.plans]
+    plans = ffi().new("struct passo_pulse_plan[]", len(curves))
+    for plan, curve, wanted in zip(run.plans, curves, plans, strict=True):
+        wanted.clocks, wanted.substeps = plan.clocks, plan.line.substeps
+        wanted.steps[0 : len(plan.move.steps)] = plan.move.steps
+        wanted.oversampled, wanted.tolerance = plan.c.oversampling > 1, _tolerance(plan)
+        wanted.points = len(curve[0])
+        wanted.times, wanted.places = (ffi().from_buffer("double[]", values) for values in curve)
+    kinds = c.PASSO_PULSE_EARLY + 2 * len(curves)
+    found = ffi().new("struct passo_pulse_fault[]", kinds * run.file.axes)
+    timing = (pins.step_high, pins.step_low, pins.dir_setup, pins.dir_hold)
+    wanted_pins = ffi().new("struct passo_pulse_pins *", timing)
+    data = ffi().from_buffer("uint8_t[]", rows)
+    if not c.passo_pulses_judge(
+        data, len(rows), run.start, wanted_pins, plans, len(curves), run.file.axes, found
+    ):
+        return []
+    return [_told(i // kinds, i % kinds, fault) for i, fault in enumerate(found) if fault.found]
 
 
-@dataclass(frozen=True)
-class _Pins:
-    """Clocks since the start, and which axes change STEP and DIR there, a bit each."""
-
-    clock: np.ndarray
-    step: np.ndarray
-    dir: np.ndarray
-
-    @classmethod
-    def of(cls, run: Run) -> "_Pins":
-        """All pins are low at first."""
-        found = []
-        for name in ("step", "dir"):
-            changes = run.pins[name].copy()
-            changes[1:] ^= run.pins[name][:-1]
-            found.append(changes)
-        return cls(run.pins["clock"].astype(np.int64) - run.start, *found)
-
-    def changes(self, pin: str, axis: int) -> np.ndarray:
-        """Clocks at which a pin of an axis changes."""
-        return self.clock[np.flatnonzero(getattr(self, pin) & (1 << axis))]
-
-
-def _first(bad: np.ndarray) -> int | None:
-    return int(np.argmax(bad)) if bad.any() else None
+def _told(axis: int, kind: int, fault: Any) -> Fault:
+    c, step, value = planner(), fault.step, fault.value
+    at = f"axis {axis}, step {step}"
+    match kind:
+        case c.PASSO_PULSE_HIGH if value == ENDLESS:
+            return Fault("high", f"axis {axis}: the last pulse does not end")
+        case c.PASSO_PULSE_HIGH:
+            return Fault("high", f"{at}: STEP is high for {value} clocks")
+        case c.PASSO_PULSE_LOW:
+            return Fault("low", f"{at}: STEP was low for {value} clocks")
+        case c.PASSO_PULSE_SETUP:
+            return Fault("setup", f"{at}: DIR changed {value} clocks before")
+        case c.PASSO_PULSE_HOLD:
+            text = f"DIR changed {value} clocks after the low time"
+            return Fault("hold", f"axis {axis}, clock {step}: {text}")
+        case c.PASSO_PULSE_DIRECTION:
+            return Fault("direction", f"{at}: its direction is {value}")
+        case c.PASSO_PULSE_TURNS:
+            text = f"DIR turns {value} times before step {step}, {fault.off:.0f} needed"
+            return Fault("turns", f"axis {axis}: {text}")
+    word = "early" if (kind - c.PASSO_PULSE_EARLY) % 2 == 0 else "late"
+    text = f"{at}, clock {value}: {word}, {fault.off:.3f} substeps from its position"
+    return Fault("curve", text)
 
 
-def timing_faults(run: Run, axis: int, steps: Steps, seen: _Pins) -> Iterator[Fault]:
-    """STEP high and low, DIR setup, hold and reversals, the direction of each pulse; first faults."""
-    pins, changes = run.file.pins, seen.changes("step", axis)
-    rises, falls = changes[::2], changes[1::2]
-    turns = seen.changes("dir", axis)
-    if len(falls) != len(rises):
-        yield Fault("high", f"axis {axis}: the last pulse does not end")
-        return
-    if (k := _first(falls - rises != pins.step_high)) is not None:
-        yield Fault("high", f"axis {axis}, step {k}: STEP is high for {falls[k] - rises[k]} clocks")
-    low = rises[1:] - falls[:-1]
-    if (k := _first(low < pins.step_low)) is not None:
-        yield Fault("low", f"axis {axis}, step {k + 1}: STEP was low for {low[k]} clocks")
-    before = np.searchsorted(turns, rises, "right")
-    setup = rises - np.concatenate([[-FAR], turns])[before]
-    if (k := _first(setup < pins.dir_setup)) is not None:
-        yield Fault("setup", f"axis {axis}, step {k}: DIR changed {int(setup[k])} clocks before")
-    hold = turns - np.concatenate([[-FAR], falls])[np.searchsorted(rises, turns, "left")] - pins.step_low
-    if (k := _first(hold < pins.dir_hold)) is not None:
-        yield Fault(
-            "hold", f"axis {axis}, clock {turns[k]}: DIR changed {int(hold[k])} clocks after the low time"
-        )
-    wanted = _directions(run, axis)
-    if (k := _first(wanted != steps[1])) is not None:
-        yield Fault("direction", f"axis {axis}, step {k}: its direction is {-wanted[k]}")
-    # turns of DIR before each step, and after the last one
-    made = np.concatenate([before, [len(turns)]])
-    made[1:] -= before
-    needed = np.zeros(len(wanted) + 1, bool)
-    if len(wanted):
-        needed[0] = wanted[0] < 0
-        needed[1:-1] = wanted[1:] != wanted[:-1]
-    if (k := _first(made != needed)) is not None:
-        yield Fault("turns", f"axis {axis}: DIR turns {made[k]} times before step {k}, {needed[k]:d} needed")
+Curve = tuple[np.ndarray, np.ndarray]
 
 
-def _directions(run: Run, axis: int) -> np.ndarray:
-    steps = [plan.move.steps[axis] for plan in run.plans]
-    return np.repeat(np.sign(steps), np.abs(steps))
+@lru_cache(16)
+def _points(shape: int, alpha: int, table: Points) -> np.ndarray:
+    return shapes(alpha, table)[shape](GRID)[0]
 
 
 def expected(plan: Plan) -> Curve:
@@ -132,12 +112,10 @@ def expected(plan: Plan) -> Curve:
 
     Before and after the plan it goes on at its highest velocity, so that a step there is early or late.
     """
-    velocities, velocity = [np.empty(0)], 0.0
-    shapes: dict[int, np.ndarray] = {}
+    velocities, velocity, told = [np.empty(0)], 0.0, told_of(plan)
     for ramp in plan.ramps:
         end, u = ramp.velocity_end / Q48, (np.arange(ramp.ticks) + 0.5) / max(ramp.ticks, 1)
-        if (points := shapes.get(ramp.shape)) is None:
-            points = shapes[ramp.shape] = shapes_of(plan)[ramp.shape](GRID)[0]
+        points = _points(ramp.shape, *told)
         s = np.interp(1 - u if ramp.mirror else u, GRID, points)
         velocities.append(velocity + (end - velocity) * (1 - s if ramp.mirror else s))
         velocity = end
@@ -157,46 +135,3 @@ def _tolerance(plan: Plan) -> float:
         change += abs(ramp.velocity_end - velocity) / Q48 * (ramp.ticks << plan.tick_log2)
         velocity = ramp.velocity_end
     return DISTANCE + change * ROUNDING
-
-
-@dataclass(frozen=True)
-class _Place:
-    """Where the steps of a plan belong, for all axes."""
-
-    curve: Curve
-    tolerance: float
-
-    @classmethod
-    def of(cls, plan: Plan) -> "_Place":
-        return cls(expected(plan), _tolerance(plan))
-
-
-def curve_faults(run: Run, axis: int, steps: Steps, places: list[_Place]) -> Iterator[Fault]:
-    """The first step that is early, and the first that is late although the pins did not keep it waiting.
-
-    `places` are those of the plans.
-    """
-    clocks, directions = steps
-    pins = run.file.pins
-    turned = np.concatenate([[True], directions[1:] != directions[:-1]])
-    turn = pins.step_low + pins.dir_hold + pins.dir_setup
-    gaps = clocks.copy()
-    gaps[1:] -= clocks[:-1]
-    gaps[:1] += int(FAR)
-    waited = gaps <= pins.step_high + pins.step_low + turned * (pins.dir_hold + pins.dir_setup + LATENCY)
-    first = begin = 0
-    for plan, place in zip(run.plans, places, strict=True):
-        count = abs(plan.move.steps[axis])
-        own = slice(first, first + count)
-        times, due = clocks[own] - begin, (np.arange(count) + 0.5) * plan.line.substeps / max(count, 1)
-        tolerance = place.tolerance
-        lead = np.interp(times, *place.curve) - due
-        leading = count == max(map(abs, plan.move.steps)) and plan.c.oversampling > 1
-        latest = LATE_LEADING if leading else LATE
-        in_time = np.interp(times - LATENCY - turned[own] * turn, *place.curve) - due <= latest + tolerance
-        for word, bad in (("early", lead < -EARLY - tolerance), ("late", ~in_time & ~waited[own])):
-            if (k := _first(bad)) is not None:
-                where = f"axis {axis}, step {first + k}, clock {clocks[first + k]}"
-                yield Fault("curve", f"{where}: {word}, {abs(lead[k]):.3f} substeps from its position")
-        first += count
-        begin += plan.clocks

@@ -14,7 +14,8 @@ from passo.failure import Failure
 from passo.host import ChannelState
 from passo.move_forms import USER_BANK
 from passo.moves import Channels, MoveFile
-from passo.moving_channel import MovingChannel
+from passo.moving_channel import PINS, MovingChannel
+from passo.native import ffi, planner
 from passo.pair_engine import PairEngine
 from passo.plan import Plan, table_of
 from passo.registers import Cause, State
@@ -74,17 +75,19 @@ class Run:
         return self._steps_of([axis])[0]
 
     def all_steps(self) -> list[Steps]:
-        """The same of all axes, in one pass over the pins."""
+        """The same of all axes."""
         return self._steps_of(range(self.file.axes))
 
     def _steps_of(self, axes: Iterable[int]) -> list[Steps]:
-        clock = self.pins["clock"].astype(np.int64) - self.start
-        step, back = self.pins["step"].copy(), self.pins["dir"]
-        step[1:] &= ~self.pins["step"][:-1]
-        found = []
+        assert PINS.itemsize == planner().PASSO_PULSES_ROW
+        rows, count, found = np.ascontiguousarray(self.pins), len(self.pins), []
+        most = (count + 1) // 2
+        own = np.empty(most, np.int64), np.empty(most, np.int8)
+        clocks, directions = ffi().from_buffer("int64_t[]", own[0]), ffi().from_buffer("int8_t[]", own[1])
+        data = ffi().from_buffer("uint8_t[]", rows)
         for axis in axes:
-            made = np.flatnonzero(step & (1 << axis))
-            found.append((clock[made], 1 - 2 * (back[made] >> axis & 1).astype(np.int8)))
+            made = planner().passo_pulses_steps(data, count, self.start, axis, clocks, directions)
+            found.append((own[0][:made].copy(), own[1][:made].copy()))
         return found
 
     def commanded(self, axis: int) -> tuple[int, int]:
@@ -229,7 +232,7 @@ def execute_channels(
         Run(
             file=channel.file,
             plans=channel.plans,
-            pins=np.concatenate(channel.pins),
+            pins=channel.pins,
             state=ChannelState(
                 state=State(snapshot.state),
                 cause=Cause(snapshot.cause),

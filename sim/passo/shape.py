@@ -6,6 +6,7 @@ shape(k / 256) in units of 2^-16; point 256 is always 1 and not stored.
 """
 
 import csv
+import io
 import math
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
@@ -54,14 +55,20 @@ def from_values(values: Sequence[float]) -> Points:
     rounded each by itself: each is the integer that keeps the area from the start to it closest to that
     of the function.
     """
+    import numpy as np
+
     first, last = values[0], values[-1]
     if not last > first:
         raise ShapeError("a shape must rise: s(1) must be above s(0)")
-    fine = [(value - first) / (last - first) * ONE for value in values]
-    exact = fine[::PARTS]
+    fine = (np.asarray(values, float) - first) / (last - first) * ONE
+    exact = fine[::PARTS].tolist()
     check(tuple(_stored(round(point)) for point in exact[:-1]))
     symmetric = all(abs(exact[k] + exact[POINTS - k] - ONE) < SAME for k in range(POINTS + 1))
-    points = _by_area(fine, exact, POINTS // 2 if symmetric else POINTS)
+    # the means of the intervals (Simpson's rule)
+    parts = fine[:-1].reshape(POINTS, PARTS).T.copy()
+    inner = 4 * parts[1::2].sum(axis=0) + 2 * parts[2::2].sum(axis=0)
+    means = ((parts[0] + inner + fine[PARTS::PARTS]) / (3 * PARTS)).tolist()
+    points = _by_area(means, exact, POINTS // 2 if symmetric else POINTS)
     if symmetric:
         points = [*points, ONE // 2, *(ONE - point for point in points[:0:-1])]
     table = tuple(map(_stored, points))
@@ -77,22 +84,17 @@ def _stored(point: int) -> int:
     return ONE - 1 if point == ONE else point
 
 
-def _by_area(fine: Sequence[float], exact: Sequence[float], count: int) -> list[int]:
+def _by_area(means: Sequence[float], exact: Sequence[float], count: int) -> list[int]:
     """The first points; the area up to point k is the sum of the points before it and half of itself."""
     points: list[int] = []
-    area, total = 0.0, 0
+    area, total, least = 0.0, 0, 0
     for k in range(count):
         wanted = round(area + exact[k] / 2 - total)
-        points.append(min(max(wanted, points[-1] if points else 0), ONE))
-        total += points[-1]
-        area += _simpson(fine[k * PARTS : (k + 1) * PARTS + 1])
+        least = min(max(wanted, least), ONE)
+        points.append(least)
+        total += least
+        area += means[k]
     return points
-
-
-def _simpson(values: Sequence[float]) -> float:
-    """Mean of a function from its values at an odd number of equal distances (Simpson's rule)."""
-    inner = 4 * sum(values[1:-1:2]) + 2 * sum(values[2:-1:2])
-    return (values[0] + inner + values[-1]) / (3 * (len(values) - 1))
 
 
 def check(points: Sequence[int]) -> Facts:
@@ -119,10 +121,19 @@ def read_table(path: Path) -> Points:
     """
     try:
         with path.open(newline="", encoding="utf-8") as file:
-            rows = [[cell.strip() for cell in row] for row in csv.reader(file) if row]
+            text = file.read()
     except OSError as error:
         raise ShapeError(f"{path}: {error.strerror}") from None
-    except (UnicodeDecodeError, csv.Error):
+    except UnicodeDecodeError:
+        raise ShapeError(f"{path}: not a CSV file") from None
+    return parse_table(text, path)
+
+
+def parse_table(text: str, path: Path) -> Points:
+    """The same of the text of a file."""
+    try:
+        rows = [[cell.strip() for cell in row] for row in csv.reader(io.StringIO(text, newline="")) if row]
+    except csv.Error:
         raise ShapeError(f"{path}: not a CSV file") from None
     header, rows = tuple(rows[0]) if rows else (), rows[1:]
     if header not in (HEADER, CURVE_HEADER):
@@ -172,7 +183,12 @@ def write_table(points: Sequence[int], path: Path) -> None:
             path, f"mean = {mean.numerator * (1 << 24) // mean.denominator} # of 2^24\npoints = [\n{lines}]\n"
         )
     else:
-        write_text(path, "k,point\n" + "".join(f"{k},{point}\n" for k, point in enumerate(points)))
+        write_text(path, table_text(points))
+
+
+def table_text(points: Sequence[int]) -> str:
+    """A table as CSV."""
+    return "k,point\n" + "".join(f"{k},{point}\n" for k, point in enumerate(points))
 
 
 def plot_table(points: Sequence[int], path: Path) -> None:

@@ -5,6 +5,7 @@ import re
 from decimal import Decimal, DecimalTuple
 from difflib import get_close_matches
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any, Self
 
 from passo.move_forms import DECIMALS_MAX, NUMBER_MAX
@@ -59,6 +60,7 @@ def check_number(key: str, value: int | Decimal, largest: int) -> Fraction:
     return Fraction(value)
 
 
+@lru_cache(4096)  # most files have the same few
 def parse_time(key: str, text: str, clock_hz: int | None = None) -> Fraction:
     """Seconds of a text such as `400ms`, `400 ms` or `4µs`; the unit `clocks` needs a clock."""
     plain = text.strip().translate(MICRO)

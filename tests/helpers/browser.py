@@ -9,10 +9,19 @@ import subprocess
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Self
 
 PROGRAM = "chromium-headless-shell"
+
+
+@dataclass
+class Tasks:
+    """Seconds of the processor: each task of the main thread of a page, and all of all its threads."""
+
+    main: list[float] = field(default_factory=list)
+    seconds: float = 0
 
 
 class Browser:
@@ -95,9 +104,9 @@ class Browser:
             )  # fmt: skip
 
     @contextmanager
-    def tasks(self) -> Iterator[list[float]]:
-        """Seconds of the processor that each task of the page's main thread takes; complete at the end."""
-        found: list[float] = []
+    def tasks(self) -> Iterator[Tasks]:
+        """What tasks the page has; complete at the end."""
+        found = Tasks()
         self._events = []
         self._call(
             "Tracing.start", traceConfig={"includedCategories": ["disabled-by-default-devtools.timeline"]}
@@ -112,11 +121,12 @@ class Browser:
             for event in events
             if event["name"] == "thread_name" and event["args"]["name"] == "CrRendererMain"
         }
-        found += [
-            event.get("tdur", 0) / 1e6
-            for event in events
-            if event["name"] == "RunTask" and (event["pid"], event["tid"]) in main
-        ]
+        for event in events:
+            if event["name"] == "RunTask" and event["pid"] in {pid for pid, _ in main}:
+                seconds = event.get("tdur", 0) / 1e6
+                found.seconds += seconds
+                if (event["pid"], event["tid"]) in main:
+                    found.main.append(seconds)
 
     def picture(self, path: Path) -> None:
         """Write what is visible to a PNG."""

@@ -10,6 +10,7 @@ from functools import cached_property
 from pathlib import Path
 
 from passo.build import Parameters
+from passo.console import Estimate
 from passo.engine import Engine
 from passo.failure import Failure
 
@@ -85,6 +86,7 @@ def judge(
     # in this process: what is measured on the core itself is measured once
     if waiting and (says := _says(core, library, 0, str(seed), check)):
         raise Failure(f"{check.name}: fault with the core itself: {says}")
+    estimate = Estimate(len(waiting))
     for number, mutant in enumerate(waiting, 1):
         fate = fates.get(mutant.name)
         says = broken(core, library, mutant.number, str(seed), check)
@@ -94,4 +96,4 @@ def judge(
         if number % 10 == 0 or number == len(waiting):
             fates.save()
             living = sum(fates.get(one.name).lives for one in waiting[:number])
-            show(f"{core.name}: {check.name}: {living} of {number} live; {len(waiting)} in all")
+            show(f"{core.name}: {check.name}: {estimate.counted(number)}; {living} live")

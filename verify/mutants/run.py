@@ -16,7 +16,7 @@ import sys
 import time
 from collections.abc import Collection, Sequence
 
-from passo.console import console
+from passo.console import Estimate, console
 
 from verify.mutants import (
     c_equal,
@@ -126,12 +126,17 @@ def main() -> None:
     rtl: list[Score] = []
     c: list[Score] = []
     modules, files = _chosen(only, "rtl", ""), _chosen(only, "c", ".c")
-    for core in CORES if modules is not None else ():
+    cores = CORES if modules is not None else ()
+    parts = len(cores) + (files is not None)
+    estimate = Estimate(parts)
+    for number, core in enumerate(cores, 1):
         run = known_of if arguments.page else run_core
         rtl += run(core, arguments.seed, arguments.each, modules or [])
+        _say(f"{core.name}: done, {estimate.counted(number)}")
     if files is not None:
         tests = [name for name in arguments.tests.split(",") if name]
         c = run_c(arguments.seed, arguments.count, files, tests, not arguments.page)
+        _say(f"C: done, {estimate.counted(parts)}")
     show_table(rtl, c)
     _say(f"{time.monotonic() - began:.0f} s")
     drawn = (arguments.seed, arguments.each, arguments.count)
