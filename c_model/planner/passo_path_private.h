@@ -388,7 +388,7 @@ static inline uint64_t passo_path_straight(const struct passo_path_planner *path
 	return passo_path_spans(path) ? path->at.straight : path->at.length;
 }
 
-/* The straight that the last line ends is followed by a corner; it goes on with the item that is being
+/* The straight that the last line ends is followed by a corner; it continues with the item that is being
  * added. */
 void passo_path_end_straight(struct passo_path_planner *path);
 void passo_path_prolong(struct passo_path_planner *path, struct passo_path_item *newest, uint64_t length);
