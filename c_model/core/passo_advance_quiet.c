@@ -162,8 +162,8 @@ uint64_t passo_advance_surroundings_quiet(
 	const bool moving = channel->motion.state == PASSO_STATE_RUN;
 
 	if (!motion_settled(channel, inputs) || !rest_settled(channel)
-	    || !outputs_settled(channel, inputs->bus) || !commands_settled(channel)
-	    || line->load_start || line->load_start_q || line->underrun
+	    || !outputs_settled(channel, inputs->bus) || !commands_settled(channel) || line->load_start
+	    || line->load_start_q || line->underrun
 	    || !ramps_settled(&channel->ramp_queue, inputs->parameters)
 	    || !lines_settled(channel, inputs->parameters) || !passo_encoders_quiet(channel, inputs))
 		return 0;
