@@ -33,7 +33,7 @@ SECONDS = 0.5  # until one has become the other
 
 IMAGES = [LARGE_IMAGE, BOTH_IMAGE]
 LEFT_OUT = {LARGE_IMAGE: ": no console", BOTH_IMAGE: ": no tools"}
-LINES = {LARGE_IMAGE: 32, BOTH_IMAGE: 40}  # of the look-ahead
+LINES = {LARGE_IMAGE: 31, BOTH_IMAGE: 40}  # of the look-ahead
 
 with_console = pytest.mark.parametrize("image", [BOTH_IMAGE], ids="_".join, indirect=True)
 
