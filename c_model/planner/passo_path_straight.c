@@ -57,7 +57,7 @@ void passo_path_unbend(
 		struct passo_path_item *item = item_at(path, meeting, index);
 
 		for (unsigned half = 0; half < PASSO_PATH_HALVES; half++) {
-			if (behind || (item->begun >> half & 1u) == 0)
+			if (behind || ((uint32_t)item->begun >> half & 1u) == 0)
 				passo_path_straighten(item, half);
 		}
 		passo_path_set_fall(item);

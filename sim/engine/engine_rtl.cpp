@@ -1,22 +1,15 @@
 /* SPDX-License-Identifier: MIT
- * The Verilated engine. The parameters of the core are fixed at build time.
- *
- * Nearly all its time goes to the logic of the core, some thousand instructions in each clock, whatever
- * moves. So the rest is kept small: a clock without a change of an input is one evaluation, in which
- * Verilator sees a rising edge of clk after a level that it has not evaluated.
+ * The Verilated engine. The parameters of the core are fixed at build time. Nearly all its time goes to the
+ * logic of the core, some thousand instructions in each clock, whatever moves.
  */
 #include <memory>
 
 #include "Vpasso_spi_top.h"
-#include "Vpasso_spi_top___024root.h"
 #include "engine_core.h"
 #include "verilated.h"
 #ifdef PASSO_WAVES
 #include "verilated_fst_c.h"
 #endif
-
-/* eval() of Verilator without its checks for the first time and for messages of other threads. */
-void Vpasso_spi_top___024root___eval(Vpasso_spi_top___024root *root);
 
 struct engine_core {
 	VerilatedContext context;
@@ -28,21 +21,6 @@ struct engine_core {
 	uint64_t begin = 0, end = 0;  /* clocks to record, from `origin` on */
 	uint64_t origin = UINT64_MAX; /* the half in which `running` rose */
 #endif
-
-	/* A clock; `changed`: an input has changed. */
-	void clock(bool changed)
-	{
-#ifdef PASSO_WAVES
-		changed = true; /* both edges are recorded */
-#endif
-		if (changed) {
-			half(false);
-			half(true);
-			return;
-		}
-		top.rootp->__Vtrigprevexpr___TOP__clk__0 = 0;
-		Vpasso_spi_top___024root___eval(top.rootp);
-	}
 
 	/* Half a clock period. */
 	void half(bool level)
@@ -134,7 +112,8 @@ uint64_t engine_core_run(
 
 	core->apply(*inputs);
 	while (clocks < limit && !changed) {
-		core->clock(clocks == 0);
+		core->half(false);
+		core->half(true);
 		clocks++;
 		changed = core->read(*outputs);
 	}
