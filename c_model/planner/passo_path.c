@@ -249,6 +249,22 @@ static uint64_t sharp_end(const struct passo_path_planner *path)
 	return passo_path_smaller((uint64_t)item->substeps << 31, path->deviation * SHARP << 16);
 }
 
+/* What of such a length is in an item, and the rest of it before that. */
+static uint64_t within(const struct passo_path_item *item, uint64_t *length)
+{
+#ifdef PASSO_WITHOUT_ROUNDING
+	const uint64_t found = *length;
+
+	(void)item;
+	*length = 0;
+#else
+	const uint64_t found = passo_path_smaller(*length, (uint64_t)item->substeps << 31);
+
+	*length -= passo_path_smaller(*length, (uint64_t)item->substeps << 32);
+#endif
+	return found;
+}
+
 /* Whether the limits of an item have changed. */
 static bool is_changed(const struct passo_path_planner *path, uint32_t index)
 {
@@ -269,7 +285,7 @@ void passo_path_look_back(struct passo_path_planner *path)
 
 	for (uint32_t index = path->added; index-- > path->planned && index >= path->final;) {
 		item = (item == path->items ? item + path->capacity : item) - 1;
-		const uint64_t over = passo_path_smaller(sharp, (uint64_t)item->substeps << 31);
+		const uint64_t over = within(item, &sharp);
 		const uint64_t reach = passo_path_is_soft(path) ? passo_path_soft_reach(path, index)
 		                                                : reach_of(path, index, item, next, over);
 
@@ -277,7 +293,6 @@ void passo_path_look_back(struct passo_path_planner *path)
 			final = index;
 		if (reach == item->reach && over == 0 && !is_changed(path, index))
 			break;
-		sharp -= passo_path_smaller(sharp, (uint64_t)item->substeps << 32);
 		item->reach = reach;
 		next = item;
 	}

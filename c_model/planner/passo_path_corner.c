@@ -269,8 +269,10 @@ uint64_t passo_path_limit_corner(
 	    .last = path->at.length,
 	    .next = length,
 	    .newest = item,
+#ifndef PASSO_WITHOUT_ROUNDING
 	    .newest_length = length,
 	    .end = path->added,
+#endif
 	};
 	const uint64_t square = passo_path_round(path, &meeting, &corner, item);
 

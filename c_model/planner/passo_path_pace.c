@@ -37,9 +37,8 @@ void passo_path_pace(
 	path->pace = (uint32_t)passo_path_smaller(ramps, PASSO_PATH_TICKS_MAX);
 	path->line_clocks =
 	    (uint32_t)passo_path_smaller((line + 1) << path->machine.tick_log2, UINT32_MAX / (2 * BURST));
-	path->line_burst = lines_queued < BURST ? lines_queued / 2 : BURST;
-	if (path->line_burst > path->capacity / 2)
-		path->line_burst = path->capacity / 2; /* the path has to see them */
+	const uint32_t most = lines_queued < BURST ? lines_queued : 2 * BURST;
+	path->line_burst = (most < path->capacity ? most : path->capacity) / 2; /* the path has to see them */
 }
 
 void passo_path_pace_begin(struct passo_path_planner *path)

@@ -318,8 +318,10 @@ struct passo_path_meeting {
 	uint64_t before, behind;        /* the straights */
 	uint64_t last, next;            /* the lines beside the corner */
 	struct passo_path_item *newest; /* that is being added */
+#ifndef PASSO_WITHOUT_ROUNDING
 	uint64_t newest_length;
 	uint32_t end; /* number of the last item behind the corner */
+#endif
 };
 
 /* Finds the change of direction from one unit vector to another; false: it goes straight on. */
