@@ -27,11 +27,7 @@ CAPACITY = 64
 def ffi() -> FFI:
     """All types, also those that only the sources have."""
     made = FFI()
-    made.include(native.ffi())
-    public = declarations(native.HEADERS)
-    both = declarations((*native.HEADERS, *(paths.planner / name for name in PRIVATE)))
-    assert both.startswith(public.rstrip())
-    made.cdef(both.removeprefix(public.rstrip()))
+    made.cdef(declarations((*native.HEADERS, *(paths.planner / name for name in PRIVATE))))
     return made
 
 
@@ -76,5 +72,7 @@ class CheckedPath(Path):
         self._c = checked()
 
     def item(self, index: int) -> Any:
-        """Of a line."""
-        return self._items[index % self.c.capacity]
+        """Of a line, with the types of `ffi()`."""
+        known = native.ffi()
+        place = known.addressof(self._items, index % self.c.capacity)
+        return ffi().cast("struct passo_path_item *", int(known.cast("uintptr_t", place)))[0]
