@@ -10,6 +10,7 @@ from passo.path_rounding import Line
 
 UNLIMITED = 1e30
 NEARLY = 1 - 1e-9
+ON = 2.0**-30  # mm: by this a line is off the one before it, as their ends are in 2^-32 mm
 SMALL = 8  # part of a turn
 
 
@@ -25,6 +26,18 @@ class Limits:
     corner: np.ndarray  # square at the start
     start: float  # square at the beginning and the end of the path
     stop: float
+
+
+def straights(unit: np.ndarray, length: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Of the straight that a line is in, how long it is up to the end of the line, and from its start on."""
+    ended, begun = length.copy(), length.copy()
+    shorter = np.minimum(length[1:], length[:-1])
+    on = np.linalg.norm(np.diff(unit, axis=0), axis=1) * shorter < ON
+    for i in np.flatnonzero(on):
+        ended[i + 1] += ended[i]
+    for i in np.flatnonzero(on)[::-1]:
+        begun[i] += begun[i + 1]
+    return ended, begun
 
 
 def limits_of(lines: Sequence[Line], settings: PathSettings, arcs: bool = True) -> Limits:
@@ -50,6 +63,7 @@ def limits_of(lines: Sequence[Line], settings: PathSettings, arcs: bool = True) 
         ends = (np.where(unit == 0, UNLIMITED, jump) / np.maximum(np.abs(unit), 1e-12)).min(axis=1) ** 2
     corner = np.full(len(length), UNLIMITED)
     bends_before, bends_behind = np.ones(len(length), bool), np.ones(len(length), bool)
+    ends_there, begins_there = straights(unit, length) if settings.profile == "linear" else (length, length)
     for i in range(1, len(length)):
         change = np.abs(unit[i] - unit[i - 1])
         cosine = np.linalg.norm(change) / 2
@@ -57,7 +71,7 @@ def limits_of(lines: Sequence[Line], settings: PathSettings, arcs: bool = True) 
             continue
         sine = max(0.0, 1 - cosine**2) ** 0.5
         rounded = float(settings.junction_deviation) * 2 * sine * (1 + sine) / cosine
-        before, behind = (min(size / 2, rounded) for size in length[i - 1 : i + 1])
+        before, behind = (min(size / 2, rounded) for size in (ends_there[i - 1], begins_there[i]))
         before, behind = min(before, (rounded + behind) / 2), min(behind, (rounded + before) / 2)
         over = min(before + behind, rounded)
         bends_before[i] = before + behind < rounded and before > NEARLY * length[i - 1] / 2
