@@ -22,6 +22,7 @@ from passo.build import model_library, planner_library
 from passo.cli import main
 from passo.compiler import call, library
 from passo.failure import BadInputError, BuildError, Failure
+from passo.native import ffi
 from passo.toolchain import paths
 
 from tests.helpers.commands import MOVES, PART, WRITERS, smaller
@@ -162,8 +163,10 @@ def test_a_small_disk(tmp_path: Path, size: str, fits: bool) -> None:
 def test_the_command_mends_its_cache(tmp_path: Path) -> None:
     """A library that ends too early would kill the process that loads it."""
     (tmp_path / "moves.toml").write_text(MOVES)
-    for made in (planner_library(), model_library()):
-        shutil.copytree(made.parent, tmp_path / "lib" / made.parent.name)
+    ffi()  # its declarations are in the cache as well
+    declared = (paths.build / "lib").glob("declarations-*")
+    for made in (planner_library().parent, model_library().parent, *filter(Path.is_dir, declared)):
+        shutil.copytree(made, tmp_path / "lib" / made.name)
     (planner,) = (tmp_path / "lib").glob("planner-*/library.so")
     os.truncate(planner, planner.stat().st_size // 2)
     command = [sys.executable, "-m", "passo.cli", "run", "moves.toml", "--engine", "model", "--out", "out"]
@@ -301,6 +304,7 @@ DIRECT = {
     "benchmarks/play_case.py": "into a temporary folder",
     "benchmarks/first_hour.py": "into a temporary folder",
     "benchmarks/rigid_tapping.py": "into a temporary folder",
+    "sim/passo/page/expanding.py": "in a page, into its memory",
     "tools/make_site.py": "into a folder that is created each time",
     "benchmarks/preview.py": "into a temporary folder",
     "stm32_bridge/passo_stm32/play.py": "into a temporary folder",
