@@ -2,13 +2,28 @@
 """Squaring (stm32_bridge/driver/passo_square.c): each motor of an axis at its own switch."""
 
 import random
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import pytest
+from passo.driver import Driver
+from passo.engine import AroundEngine
+from passo.native import ffi
 from passo.random_cases import seed
+from passo.registers import (
+    ADDRESS_CHANNEL_BASE,
+    CHANNEL_TRIGGER,
+    CHANNEL_TRIGGER_ARM_LSB,
+    CHANNEL_TRIGGER_STATE,
+    CHANNEL_TRIGGER_STATE_ARMED_LSB,
+    CHANNEL_TRIGGER_STATE_ARMING_LSB,
+    Operation,
+)
 
+from benchmarks import squaring
 from benchmarks.squaring import CLOCK_HZ, Gantry, begin, gantry_of, problems, square
-from tests.helpers.driver_wire import Q32, by_speed, error_of, struct
+from tests.helpers.driver_wire import Q32, by_speed, error_of, open_driver, struct
 
 SKEWED = Gantry((900, 1200), (0, 10))
 
@@ -153,3 +168,56 @@ def test_the_greatest_bound(racking: int, error: str) -> None:
     homes[0].racking = racking
     assert error_of(driver, "home", homes, 1) == error and len(kept)
     machine.engine.close()
+
+
+class Lossy(AroundEngine):
+    """A link on which nothing arrives from a certain disarming of the trigger on, until it is mended."""
+
+    def __init__(self, engine: Any, disarming: int):
+        super().__init__(engine)
+        self.disarmings, self.lost_from, self.is_lost = 0, disarming, False
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.engine, name)
+
+    def transfer(self, mosi: Sequence[int], gap: int = 16) -> list[int]:
+        """A frame."""
+        write, address = mosi[0] >> 28 == Operation.WRITE, mosi[0] & 0xFFF
+        if (
+            write
+            and address == ADDRESS_CHANNEL_BASE + CHANNEL_TRIGGER
+            and not self.is_lost
+            and mosi[1] & 1 == 0
+        ):
+            self.is_lost = self.disarmings == self.lost_from
+            self.disarmings += 1
+        return [0] * len(mosi) if self.is_lost else self.engine.transfer(mosi, gap)
+
+
+@pytest.mark.parametrize(("start", "disarming"), [((1200, 900), 0), ((1450, 900), 0), ((1450, 900), 1)])
+def test_a_trigger_whose_disarming_is_lost_is_disarmed_by_clear(
+    start: tuple[int, int], disarming: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where the limit of another motor has stopped the axis. Otherwise it stops a later move."""
+    links: list[Lossy] = []
+
+    def opened(engine: Any) -> Driver:
+        links.append(Lossy(engine, disarming + 1))  # the first is that of the opening
+        return open_driver(links[-1])
+
+    monkeypatch.setattr(squaring, "open_driver", opened)
+    driver, rig, (homes, _) = begin(Gantry(start, (10, 0)))
+    error = error_of(driver, "home", homes, 1)
+    while error == "OK" and driver.is_moving:
+        error = error_of(driver, "poll")
+        rig.run(CLOCK_HZ // 2000)
+    assert links[0].is_lost
+    links[0].is_lost, links[0].lost_from = False, -1
+    rig.run(CLOCK_HZ // 10)
+    assert error_of(driver, "clear") == "OK"
+    word = ffi().new("uint32_t *")
+    address = driver.c.base + CHANNEL_TRIGGER_STATE
+    assert driver.lib.passo_host_read(driver.c.host, address, word, 1) == 0
+    assert word[0] >> CHANNEL_TRIGGER_STATE_ARMED_LSB & 1 == 0
+    assert word[0] >> CHANNEL_TRIGGER_STATE_ARMING_LSB & 1 == 0
+    rig.engine.close()

@@ -78,7 +78,6 @@ static enum passo_error leave_limit(
 	*by_limit = passo->square.stopped != 0u && !report->fired;
 	if (error != PASSO_OK || !*by_limit)
 		return error;
-	passo->task.armed = false;
 	error = passo_driver_disarm(passo);
 	return error == PASSO_OK ? passo_clear(passo) : error;
 }
