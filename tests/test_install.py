@@ -116,7 +116,7 @@ def test_version(installed: Installed) -> None:
 def test_moves_run_outside_of_the_repository(installed: Installed) -> None:
     """On both engines: what is built goes to the cache, results to the present folder.
 
-    Only the C model is compiled: the name of a library has the hash of its sources, so that those of the
+    Only the C model is compiled, beside declarations: the name of a library has the hash of its sources, so that those of the
     repository, put into the cache, are found if the package carries the same ones.
     """
     rtl = rtl_library(parameters_for(3))
@@ -126,7 +126,8 @@ def test_moves_run_outside_of_the_repository(installed: Installed) -> None:
     (installed.home / "moves.toml").write_text(MOVES)
     done = installed.run("passo", "run", "moves.toml", "--report")
     assert done.returncode == 0, done.stderr
-    assert [line.split()[1] for line in done.stdout.splitlines() if line.startswith("Building")] == ["model"]
+    built = [line.split()[1] for line in done.stdout.splitlines() if line.startswith("Building")]
+    assert built == ["declarations", "model"]
     assert "moves: 1024 steps in 320000 clocks" in done.stdout and "edges agree" in done.stdout
     results = installed.home / "build" / "run" / "moves"
     assert sorted(path.name for path in results.iterdir()) == ["pulses.csv", "report.html", "summary.json"]
