@@ -14,7 +14,6 @@ from passo.random_cases import seed
 from passo.registers import (
     ADDRESS_CHANNEL_BASE,
     CHANNEL_TRIGGER,
-    CHANNEL_TRIGGER_ARM_LSB,
     CHANNEL_TRIGGER_STATE,
     CHANNEL_TRIGGER_STATE_ARMED_LSB,
     CHANNEL_TRIGGER_STATE_ARMING_LSB,
