@@ -14,6 +14,7 @@ from passo.random_cases import seed
 from passo.registers import (
     ADDRESS_CHANNEL_BASE,
     CHANNEL_TRIGGER,
+    CHANNEL_TRIGGER_ARM_LSB,
     CHANNEL_TRIGGER_STATE,
     CHANNEL_TRIGGER_STATE_ARMED_LSB,
     CHANNEL_TRIGGER_STATE_ARMING_LSB,
@@ -186,7 +187,7 @@ class Lossy(AroundEngine):
             write
             and address == ADDRESS_CHANNEL_BASE + CHANNEL_TRIGGER
             and not self.is_lost
-            and mosi[1] & 1 == 0
+            and mosi[1] >> CHANNEL_TRIGGER_ARM_LSB & 1 == 0
         ):
             self.is_lost = self.disarmings == self.lost_from
             self.disarmings += 1

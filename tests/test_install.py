@@ -116,8 +116,8 @@ def test_version(installed: Installed) -> None:
 def test_moves_run_outside_of_the_repository(installed: Installed) -> None:
     """On both engines: what is built goes to the cache, results to the present folder.
 
-    Only the C model is compiled, beside declarations: the name of a library has the hash of its sources, so that those of the
-    repository, put into the cache, are found if the package carries the same ones.
+    Only the C model is compiled, beside declarations: the name of a library has the hash of its sources, so
+    that those of the repository, put into the cache, are found if the package carries the same ones.
     """
     rtl = rtl_library(parameters_for(3))
     (verilated,) = (paths.build / "lib").glob(f"verilated_{Parameters().name}-*/Vpasso_spi_top.mk")
