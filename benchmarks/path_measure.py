@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Measures a path: its time against the fastest motion, and its pins against the limits of the axes."""
 
-import math
 from dataclasses import dataclass, field, replace
 from itertools import product
 from math import inf
@@ -13,7 +12,7 @@ from passo.path import LOOK_AHEAD, PathSettings
 from passo.path_rounding import SHARE, Line
 from passo.plan import PlanError
 
-from benchmarks.path_paths import Case
+from benchmarks.path_paths import Case, lengths_of
 from benchmarks.path_plan import Planned, plan
 from benchmarks.path_reference import fastest
 from benchmarks.path_reference_jerk import soft_seconds
@@ -115,8 +114,7 @@ def _ratios(measured: Measured, lines: list[Line], settings: PathSettings, fits:
 
 def sent_lines(lines: list[Line], planned: Planned) -> list[Line]:
     """Those that are sent, of which each may be several that were merged: at the lowest of their feeds."""
-    begin = [(0.0,) * len(lines[0][0]), *(target for target, _ in lines[:-1])]
-    ends = np.cumsum([math.dist(before, target) for before, (target, _) in zip(begin, lines, strict=True)])
+    ends = np.cumsum(lengths_of(lines))
     places = np.cumsum([line.substeps for line in planned.lines]) / planned.path.substeps_per_mm
     last = np.abs(ends[:, None] - places).argmin(axis=0)
     found: list[Line] = []
@@ -128,10 +126,9 @@ def sent_lines(lines: list[Line], planned: Planned) -> list[Line]:
 
 def sendable(lines: list[Line], seconds: float) -> list[Line]:
     """The same lines at feeds with which each of them takes so long, at least."""
-    begin = [(0.0,) * len(lines[0][0]), *(target for target, _ in lines[:-1])]
     return [
-        (target, min(feed or inf, math.dist(before, target) / seconds))
-        for before, (target, feed) in zip(begin, lines, strict=True)
+        (target, min(feed or inf, length / seconds))
+        for length, (target, feed) in zip(lengths_of(lines), lines, strict=True)
     ]
 
 

@@ -124,11 +124,14 @@ def write_cases(path: Path, cases: dict[str, Case]) -> None:
     write_text(path, "{\n" + rows + "\n}\n")
 
 
+def lengths_of(lines: Sequence[Line]) -> list[float]:
+    """Of the lines of a path from the origin, mm."""
+    begin = [(0.0,) * len(lines[0][0]), *(target for target, _ in lines[:-1])]
+    return [math.dist(before, target) for before, (target, _) in zip(begin, lines, strict=True)]
+
+
 def seconds_at_feed(lines: Sequence[Line], settings: PathSettings) -> float:
     """How long the path takes at its feeds, without acceleration."""
     top = min(float(axis.speed) for axis in settings.axes[:2])
-    total, here = 0.0, (0.0,) * len(settings.axes)
-    for target, feed in lines:
-        total += math.dist(here, target) / min(feed or top, top)
-        here = tuple(target)
-    return total
+    feeds = (min(feed or top, top) for _, feed in lines)
+    return sum(length / feed for length, feed in zip(lengths_of(lines), feeds, strict=True))

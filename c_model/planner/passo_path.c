@@ -242,11 +242,9 @@ static uint64_t sharp_end(const struct passo_path_planner *path)
 
 	if (item->last || path->rest || passo_path_shape(path) != PASSO_SHAPE_LINEAR)
 		return 0;
-#ifndef PASSO_WITHOUT_ROUNDING
-	if (path->at.first + 1 != path->added && passo_path_spans(path))
-		return passo_path_smaller(path->at.straight / 2, path->deviation * SHARP) << 16;
-#endif
-	return passo_path_smaller((uint64_t)item->substeps << 31, path->deviation * SHARP << 16);
+	const uint64_t half =
+	    ends_straight(path) ? passo_path_straight(path) / 2 << 16 : (uint64_t)item->substeps << 31;
+	return passo_path_smaller(half, path->deviation * SHARP << 16);
 }
 
 /* What of such a length is in an item, and the rest of it before that. */

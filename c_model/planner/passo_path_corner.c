@@ -3,6 +3,7 @@
  * it. docs/path.md has the rules.
  */
 #include <stddef.h>
+#include <string.h>
 
 #include "passo_path_private.h"
 
@@ -97,8 +98,7 @@ static void find_rounding(const struct passo_path_planner *path, const struct pa
 	const bool lone = passo_path_smaller(rounding->before, rounding->behind) >= corner->arc;
 	const uint32_t sides = before && behind && lone ? 1 : 2;
 
-	for (unsigned i = 0; i < 2 * PASSO_PATH_SHARES; i++)
-		item->lone[i / PASSO_PATH_SHARES][i % PASSO_PATH_SHARES] = (struct passo_path_share){0, 0};
+	memset(item->lone, 0, sizeof item->lone);
 	item->valley = false;
 	item->turn = 0;
 	if (!before && !behind)

@@ -92,9 +92,7 @@ struct passo_path_item {
 	uint8_t point : 2; /* enum passo_path_point */
 	bool whole : 1;    /* the corner is lone, and its rounding may span several lines */
 	uint16_t away;     /* of a point: 65,536ths of `turn` that are between it and the corner */
-#endif
-#ifndef PASSO_WITHOUT_ROUNDING
-	uint32_t turn; /* substeps on either side over which a lone corner at its start may be rounded */
+	uint32_t turn;     /* substeps on either side over which a lone corner at its start may be rounded */
 	/* of a path that falls, or rises: of the axis with most of both there, and of that which lost most */
 	struct passo_path_share lone[2][PASSO_PATH_SHARES];
 	bool valley; /* it has that where the path comes down to the corner and speeds up behind it */

@@ -5,6 +5,7 @@
  * straight known, and the corner at its start faster.
  */
 #include <stddef.h>
+#include <string.h>
 
 #include "passo_path_private.h"
 
@@ -32,6 +33,28 @@ static uint64_t length_of(
 	                            : (uint64_t)passo_path_item(path, index)->substeps << 16;
 }
 
+/* The limits of an item have changed. */
+static void changes(struct passo_path_planner *path, uint32_t index)
+{
+	path->bent = index < path->bent ? index : path->bent;
+}
+
+/* The line beside the corner on one side, its length, and the line that is one farther away than another. */
+static uint32_t first_of(const struct passo_path_meeting *meeting, bool behind)
+{
+	return behind ? meeting->index : meeting->index - 1;
+}
+
+static uint64_t first_length(const struct passo_path_meeting *meeting, bool behind)
+{
+	return behind ? meeting->next : meeting->last;
+}
+
+static uint32_t farther(uint32_t index, bool behind)
+{
+	return behind ? index + 1 : index - 1;
+}
+
 /* Adds a curvature, unless that is null. */
 static void bend_half(struct passo_path_planner *path, const struct passo_path_meeting *meeting, bool behind,
     uint32_t index, unsigned half, const int64_t *curvature)
@@ -44,14 +67,14 @@ static void bend_half(struct passo_path_planner *path, const struct passo_path_m
 		item->begun |= half > 0 ? 2u : 1u;
 	passo_path_bend(path, curvature, behind ? meeting->to : meeting->from, half, item);
 	passo_path_set_fall(item);
-	path->bent = index < path->bent ? index : path->bent;
+	changes(path, index);
 }
 
 void passo_path_unbend(
     struct passo_path_planner *path, const struct passo_path_meeting *meeting, bool behind, uint64_t reach)
 {
-	uint32_t index = behind ? meeting->index : meeting->index - 1;
-	uint64_t passed = 0, length = behind ? meeting->next : meeting->last;
+	uint32_t index = first_of(meeting, behind);
+	uint64_t passed = 0, length = first_length(meeting, behind);
 
 	for (;;) {
 		struct passo_path_item *item = item_at(path, meeting, index);
@@ -61,11 +84,11 @@ void passo_path_unbend(
 				passo_path_straighten(item, half);
 		}
 		passo_path_set_fall(item);
-		path->bent = index < path->bent ? index : path->bent;
+		changes(path, index);
 		passed += length;
 		if (passed >= reach || index == (behind ? meeting->end : path->planned))
 			return;
-		index = behind ? index + 1 : index - 1;
+		index = farther(index, behind);
 		length = length_of(path, meeting, index);
 	}
 }
@@ -75,8 +98,8 @@ uint64_t passo_path_spread(struct passo_path_planner *path, const struct passo_p
 {
 	const unsigned near = behind ? 0 : 1;
 	const uint32_t parts = reach < corner->arc ? CURVE_PARTS : CORNER_PARTS;
-	uint32_t index = behind ? meeting->index : meeting->index - 1;
-	uint64_t passed = 0, length = behind ? meeting->next : meeting->last;
+	uint32_t index = first_of(meeting, behind);
+	uint64_t passed = 0, length = first_length(meeting, behind);
 
 	corner->point[behind].index = 0;
 	if (reach < length / 2)
@@ -91,7 +114,7 @@ uint64_t passo_path_spread(struct passo_path_planner *path, const struct passo_p
 		passed += length;
 		if (behind ? index == meeting->end : index <= path->planned)
 			return passed; /* the ramps are there */
-		index = behind ? index + 1 : index - 1;
+		index = farther(index, behind);
 		length = length_of(path, meeting, index);
 		if (reach < passed + length / parts) {
 			if (reach - passed >= reach / HARDLY) {
@@ -129,7 +152,7 @@ static void clear_points(struct passo_path_planner *path, uint32_t corner)
 		item->turn = item->away = 0;
 		item->bend = PASSO_PATH_SQUARE_MAX;
 	}
-	path->bent = path->point[0] < path->bent ? path->point[0] : path->bent;
+	changes(path, path->point[0]);
 	path->pointed = 0;
 }
 
@@ -139,30 +162,28 @@ static void set_point(struct passo_path_planner *path, const struct passo_path_m
 {
 	struct passo_path_item *point = item_at(path, meeting, index);
 
-	for (unsigned i = 0; i < 2 * PASSO_PATH_SHARES; i++)
-		point->lone[i / PASSO_PATH_SHARES][i % PASSO_PATH_SHARES] =
-		    corner->lone[i / PASSO_PATH_SHARES][i % PASSO_PATH_SHARES];
+	memcpy(point->lone, corner->lone, sizeof point->lone);
 	point->point = behind ? PASSO_PATH_BEHIND : PASSO_PATH_BEFORE;
 	point->whole = corner->whole;
 	point->turn = corner->turn;
 	point->valley = corner->valley;
 	point->bend = corner->bend;
 	path->point[behind] = index;
-	path->bent = index < path->bent ? index : path->bent;
+	changes(path, index);
 }
 
 /* On one side of a lone corner. */
 static void set_lone(struct passo_path_planner *path, const struct passo_path_meeting *meeting, bool behind,
     uint64_t reach, const struct passo_path_item *corner)
 {
-	uint32_t index = behind ? meeting->index : meeting->index - 1;
+	uint32_t index = first_of(meeting, behind);
 
-	for (uint64_t passed = behind ? meeting->next : meeting->last; passed < reach;) {
+	for (uint64_t passed = first_length(meeting, behind); passed < reach;) {
 		const uint32_t at = behind ? index + 1 : index;
 
 		set_point(path, meeting, behind, at, corner);
 		item_at(path, meeting, at)->away = (uint16_t)passo_mul_div(passed, UINT16_MAX, reach);
-		index = behind ? index + 1 : index - 1;
+		index = farther(index, behind);
 		passed += length_of(path, meeting, index);
 	}
 }
