@@ -151,7 +151,7 @@ static uint64_t clock_bus(
 	const uint16_t address = core->link.bus.address;
 	struct passo_inputs pins = *inputs;
 
-	if (parameters->inputs + parameters->encoders + parameters->outputs != 0u || !spares_channels(core)
+	if (parameters->inputs + parameters->encoders + parameters->outputs + parameters->trackers != 0u || !spares_channels(core)
 	    || rest_quiet(core, inputs, parameters->channels, 1) == 0u)
 		return 0;
 	if (shift) {
