@@ -33,6 +33,7 @@ module passo_axis_registers #(
   output reg  [       1:0] timing_place,
   output wire [      15:0] timing,             // 0 counts as 1
   output wire              timing_is_minimal,  // it is 1
+  output reg  [      15:0] half,               // of bus_data: the upper one after bus_write, then the lower one
   input  wire [AXES*4-1:0] lost
 );
 
@@ -61,7 +62,6 @@ module passo_axis_registers #(
   end
 
   // bus_data stands in the clock of bus_write and the one after
-  reg [15:0] half;
   assign timing_is_minimal = half[15:1] == 15'd0;
   assign timing            = {half[15:1], half[0] | timing_is_minimal};
 

@@ -144,6 +144,9 @@ module passo_channel #(
   wire [AXES-1:0] step_request;
   wire [AXES-1:0] directions;
   wire [    31:0] trackers_read_data;
+  /* verilator lint_off UNUSEDSIGNAL */
+  wire [    15:0] bus_half;
+  /* verilator lint_on UNUSEDSIGNAL */
 
   // axes
   wire            axes_quiet;
@@ -434,6 +437,7 @@ module passo_channel #(
     .bus_address    (bus_address[3:0]),
     .bus_data       (bus_data),
     .read_data      (axes_read_data),
+    .bus_half       (bus_half),
     .step_request   (step_request),
     .directions     (directions),
     .drop           (drop),
@@ -581,7 +585,8 @@ module passo_channel #(
         .bus_read    (bus_read),
         .select      (select),
         .bus_address (bus_address),
-        .bus_data    (bus_data),
+        .bus_bits    (bus_data[AXES-1:0]),
+        .bus_half    (bus_half),
         .read_data   (trackers_read_data),
         .halt        (drop | stopped),
         .zero        (command_zero),

@@ -36,7 +36,8 @@ module passo_tracker #(
   input  wire            bus_read,
   input  wire            select,
   input  wire [     7:0] bus_address,  // within the channel
-  input  wire [    31:0] bus_data,
+  input  wire [AXES-1:0] bus_bits,     // lower bits of the data
+  input  wire [    15:0] bus_half,     // one clock late the upper half of the data, then the lower one
   output wire [    31:0] read_data,
   // motion
   input  wire            halt,         // hard stop, or stopped
@@ -113,20 +114,20 @@ module passo_tracker #(
   reg  [ 4:0] second;
   reg  [ 4:0] result;
   reg         writes;
-  reg         adds;  // the second word counts
   reg         subtracts;
   reg         borrows;  // carry into the lowest word
   reg         is_zero;  // write 0
+  reg         is_over;  // the second number has no words left, or does not count
 
   always @* begin
     first     = {SCRATCH[4:2], word};
     second    = {ACCELERATION[4:1], word[0]};
     result    = {SCRATCH[4:2], word};
     writes    = 1'b1;
-    adds      = 1'b1;
     subtracts = ~negative;
     borrows   = ~negative;
     is_zero   = 1'b0;
+    is_over   = 1'b0;
     case (slot[4:2])
       3'd0: begin
         // a word less itself is 0
@@ -144,18 +145,18 @@ module passo_tracker #(
       end
       3'd2: second = {STOPPING[4:2], word};
       3'd3: begin
-        second = old_velocity;
-        adds   = ~upper;
+        second  = old_velocity;
+        is_over = upper;
       end
       3'd4: begin
-        adds   = ~upper;
-        writes = 1'b0;
+        is_over = upper;
+        writes  = 1'b0;
       end
       3'd5: begin
         first     = old_velocity;
         result    = new_velocity;
         writes    = upper;
-        adds      = ~keeps;
+        is_over   = keeps;
         subtracts = ~(speeds | keeps);
         borrows   = ~(speeds | keeps);
         is_zero   = cleared;
@@ -164,7 +165,7 @@ module passo_tracker #(
         first     = {STOPPING[4:2], word};
         second    = speeds ? new_velocity : old_velocity;
         result    = {STOPPING[4:2], word};
-        adds      = ~upper & ~keeps;
+        is_over   = upper | keeps;
         subtracts = ~(speeds | keeps);
         borrows   = ~(speeds | keeps);
         is_zero   = cleared;
@@ -173,15 +174,16 @@ module passo_tracker #(
         first     = lands ? {TARGET[4:2], word} : {POSITION[4:2], word};
         second    = new_velocity;
         result    = {POSITION[4:2], word};
-        adds      = ~upper & ~lands;
+        is_over   = upper | lands;
         subtracts = negative & ~lands;
         borrows   = negative & ~lands;
         is_zero   = cleared_position;
       end
     endcase
+    // two words of the target are 0
+    if (is_zero) first = {TARGET[4:1], word[0]};
+    if (is_zero || is_over) second = {TARGET[4:1], word[0]};
     if (is_zero) begin
-      first     = {TARGET[4:1], word[0]};
-      adds      = 1'b0;
       subtracts = 1'b0;
       borrows   = 1'b0;
     end
@@ -192,10 +194,9 @@ module passo_tracker #(
   wire [ 2:0] number = bus_address[2:0];
   reg         in_targets;  // decoded one clock ahead of the strobe
   reg         in_axis;
+  reg         writes_upper;
   reg         writes_lower;
-  wire        writes_upper = bus_write & (in_targets | in_axis);
-  wire [ 4:0] host_place = in_axis ? {bus_address[5:3], 1'b1, number[0]} : {number, 1'b0, bus_address[3]};
-  reg  [ 4:0] host_place_q;
+  reg  [ 4:0] host_place;
   wire        copies = slot == 5'd2 || slot == 5'd3 || slot[4:1] == 4'd9 || slot[4:1] == 4'd10;
   wire [ 4:0] setting = slot[4] ? {slot[2] ? SPEED[4:1] : ACCELERATION[4:1], ~word[0]} : {TARGET[4:2], 1'b1, ~word[0]};
   wire [15:0] setting_word;
@@ -207,15 +208,14 @@ module passo_tracker #(
   wire [15:0] second_word;
   reg  [ 7:0] result_q;
   reg         writes_q;
-  reg         adds_q;
   reg         subtracts_q;
   reg         borrows_q;
   reg         begins_q;  // lowest word
   reg         carry;
-  wire [15:0] term = (second_word & {16{adds_q}}) ^ {16{subtracts_q}};
+  wire [15:0] term = second_word ^ {16{subtracts_q}};
   wire [16:0] sum = {1'b0, first_word} + {1'b0, term} + {16'd0, begins_q ? borrows_q : carry};
   wire [ 2:0] axis_padded = {{(3 - AXIS_BITS) {1'b0}}, axis};
-  wire        host_reads = slot[3:1] == 3'd7;  // lines 3 and 7 do not need the second word then
+  wire        host_reads = slot[4:1] == 4'd10;  // the second word is not needed then
 
   passo_memory #(
     .WIDTH        (16),
@@ -223,9 +223,9 @@ module passo_tracker #(
     .DATA_REGISTER(0)
   ) u_settings (
     .clk          (clk),
-    .write        (writes_upper | writes_lower),
-    .write_address(writes_lower ? {host_place_q, 1'b0} : {host_place, 1'b1}),
-    .write_data   (writes_lower ? bus_data[15:0] : bus_data[31:16]),
+    .write        ((writes_upper & ~rst) | writes_lower),
+    .write_address({host_place, writes_upper}),
+    .write_data   (bus_half),
     .read_address ({axis_padded, slot[4], slot[4] ? ~slot[2] : target_down, ~word[0]}),
     .load         (1'b1),
     .read_data    (setting_word)
@@ -270,14 +270,14 @@ module passo_tracker #(
     result_q     <= {axis_padded, copies ? setting : result};
     copies_q     <= copies;
     writes_q     <= copies ? ~(word[0] ? spoils : writes_upper) : writes;
-    adds_q       <= adds;
     subtracts_q  <= subtracts;
     borrows_q    <= borrows;
     begins_q     <= word == 2'd0 || ((slot[4:2] == 3'd0 || slot[4:2] == 3'd5) && word == 2'd2);
     carry        <= sum[16];
     spoils       <= writes_upper;
-    writes_lower <= writes_upper;
-    host_place_q <= host_place;
+    writes_lower <= writes_upper & ~rst;
+    writes_upper <= bus_write & (in_targets | in_axis) & ~rst;
+    if (bus_write) host_place <= in_axis ? {bus_address[5:3], 1'b1, number[0]} : {number, 1'b0, bus_address[3]};
     if (turn_ends) axis <= axis + 1'b1;
     if (tick_ends) odd <= ~odd;
 
@@ -301,7 +301,6 @@ module passo_tracker #(
       axis         <= {AXIS_BITS{1'b0}};
       odd          <= 1'b0;
       writes_q     <= 1'b0;
-      writes_lower <= 1'b0;
     end
   end
 
@@ -332,7 +331,6 @@ module passo_tracker #(
 
   reg     write_enable;
   reg     read_state;
-  reg     read_position;
   integer j;
 
   always @(posedge clk) begin
@@ -356,7 +354,7 @@ module passo_tracker #(
     if (turn_ends) step_down <= negative;
     moves <= turns | (enabled & ~at_target & {AXES{~brake}});
 
-    if (write_enable) enabled <= bus_data[AXES-1:0];
+    if (write_enable) enabled <= bus_bits;
     if (tick_ends && clearing) clears <= clears - 2'd1;
     if (tick_ends && clears == 2'd1) clears_position <= 1'b0;
     if (halt || zero || rst) begin
@@ -374,9 +372,8 @@ module passo_tracker #(
   end
 
   // ---- host: registers ----
-  reg [15:0] position_low;
-  reg [15:0] position_high;
-  reg        takes_high;
+  reg [31:0] position;
+  reg        takes_upper;
   reg        in_state;
   reg        in_positions;
 
@@ -388,19 +385,16 @@ module passo_tracker #(
     in_positions  <= select && bus_address[7:3] == CHANNEL_TRACKER_POSITION_BASE[7:3];
     write_enable  <= bus_write && in_state && !number[0];
     read_state    <= bus_read && in_state && number[0];
-    read_position <= bus_read && in_positions;
 
-    // not torn: a read takes what was there before; the address has been stable for longer than two captures
-    if (slot[3:0] == 4'd15 && !bus_read) begin
-      position_low <= second_word;
-      takes_high   <= 1'b1;
-    end else takes_high <= 1'b0;
-    if (takes_high) position_high <= second_word;
+    // 0 unless it is addressed, for longer than a turn before it is read. Not torn: a read takes what was there before.
+    takes_upper <= slot == 5'd21 && !bus_read;
+    if (slot == 5'd21 && !bus_read) position[15:0] <= second_word & {16{in_positions}};
+    if (takes_upper) position[31:16] <= second_word & {16{in_positions}};
 
     if (rst) begin
-      write_enable  <= 1'b0;
-      read_state    <= 1'b0;
-      read_position <= 1'b0;
+      write_enable <= 1'b0;
+      read_state   <= 1'b0;
+      position     <= 32'd0;
     end
   end
 
@@ -411,7 +405,7 @@ module passo_tracker #(
   /* verilator lint_on UNUSEDSIGNAL */
 
   assign read_data = (read_state ? {8'd0, at_target_padded, moves_padded, enabled_padded} : 32'd0)
-                     | (read_position ? {position_high, position_low} : 32'd0);
+                     | position;
 
 endmodule
 `resetall

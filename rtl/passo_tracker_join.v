@@ -37,7 +37,6 @@ module passo_tracker_join (
 
   reg signed [2:0] owed;  // steps of the tracker that wait, signed
   reg              turned;  // the axis went against the path last
-  reg              path_down_q;
 
   wire             some = owed != 3'd0;
   wire             several = owed[2] ? owed[1:0] != 2'd3 : owed[1];  // two or more
@@ -48,7 +47,7 @@ module passo_tracker_join (
   wire             joins = may_join & (~against | ~path_moves | several);
   wire             turns = joins               ? against :
                            path_step & ~against ? 1'b0 :
-                           turned & (path_down == path_down_q) & ~(path_moves & ~some);
+                           turned & ~(path_moves & ~some);
 
   assign step_request = (path_step & ~against) | joins;
   assign direction    = path_down ^ turns;
@@ -58,9 +57,8 @@ module passo_tracker_join (
   wire signed [2:0] more = made ? (made_down ? -3'sd1 : 3'sd1) : 3'sd0;
 
   always @(posedge clk) begin
-    path_down_q <= path_down;
-    turned      <= turns;
-    owed        <= owed + done + more;
+    turned <= turns;
+    owed   <= owed + done + more;
     if (path_moves) went_down <= path_down;
     if (halt) owed <= 3'sd0;
     if (rst) begin

@@ -17,7 +17,8 @@ module passo_trackers #(
   input  wire            bus_read,
   input  wire            select,
   input  wire [     7:0] bus_address,  // within the channel
-  input  wire [    31:0] bus_data,
+  input  wire [AXES-1:0] bus_bits,     // lower bits of the data
+  input  wire [    15:0] bus_half,     // one clock late the upper half of the data, then the lower one
   output wire [    31:0] read_data,
   // motion
   input  wire            halt,         // hard stop, or stopped
@@ -52,7 +53,8 @@ module passo_trackers #(
     .bus_read   (bus_read),
     .select     (select),
     .bus_address(bus_address),
-    .bus_data   (bus_data),
+    .bus_bits   (bus_bits),
+    .bus_half   (bus_half),
     .read_data  (read_data),
     .halt       (halt),
     .zero       (zero),

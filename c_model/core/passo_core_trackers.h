@@ -32,7 +32,7 @@ struct passo_tracker_axis {
 /* How the steps of path and tracker of an axis meet. */
 struct passo_tracker_join {
 	int8_t owed;
-	bool turned, path_down, went_down; /* path_down: one clock ago */
+	bool turned, went_down;
 };
 
 /* What has been read and found in the turn of an axis. */
@@ -50,7 +50,8 @@ struct passo_trackers {
 	bool clears_position;
 	bool step_down;
 	bool busy;
-	bool writes_enable; /* bus write strobe, one clock late */
+	bool writes_enable, writes_setting; /* bus write strobes, one clock late */
+	uint8_t written;                    /* address within the channel */
 	bool hold;          /* in the previous clock */
 	struct passo_tracker_turn now;
 };

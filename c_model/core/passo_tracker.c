@@ -14,8 +14,8 @@ enum {
 	SLOT_DISTANCE = 17, /* all words have been read */
 	SLOT_ACCELERATION = 18,
 	SLOT_SPEED = 20,
-	SLOT_LAST = 31,
-	SHOWN_CLOCKS = 16
+	SLOT_SHOWN = 21,
+	SLOT_LAST = 31
 };
 
 static bool sign_of(uint64_t value)
@@ -197,9 +197,9 @@ void passo_tracker_clock(struct passo_channel *channel, const struct passo_bus *
 	const unsigned turn = trackers->turn;
 	const bool turn_ends = trackers->slot == SLOT_LAST;
 	const bool tick_ends = turn_ends && turn == turns_of(channel) - 1u;
-	const bool shows = trackers->slot % SHOWN_CLOCKS == SHOWN_CLOCKS - 1u && !bus->read;
+	const bool shows = trackers->slot == SLOT_SHOWN && !bus->read;
 	uint32_t *const word =
-	    selected && bus->write ? written_word(trackers, channel->axes, address) : NULL;
+	    trackers->writes_setting ? written_word(trackers, channel->axes, trackers->written) : NULL;
 
 	for (unsigned i = 0; i < channel->axes; i++) {
 		struct passo_tracker_axis *axis = &trackers->axis[i];
@@ -219,6 +219,9 @@ void passo_tracker_clock(struct passo_channel *channel, const struct passo_bus *
 	trackers->writes_enable = selected && bus->write && address == PASSO_CHANNEL_TRACKER_ENABLE;
 	if (word != NULL)
 		*word = bus->data;
+	trackers->writes_setting = selected && bus->write;
+	if (trackers->writes_setting)
+		trackers->written = address;
 	trackers->slot = (uint8_t)((trackers->slot + 1u) % PASSO_TRACKER_TURN);
 	if (turn_ends)
 		trackers->turn = (uint8_t)((turn + 1u) % turns_of(channel));
@@ -257,15 +260,14 @@ bool passo_trackers_quiet(const struct passo_channel *channel)
 
 	if (!trackers->present)
 		return true;
-	if (trackers->clears != 0u || trackers->busy || trackers->writes_enable)
+	if (trackers->clears != 0u || trackers->busy || trackers->writes_enable || trackers->writes_setting)
 		return false;
 	for (unsigned i = 0; i < channel->axes; i++) {
 		const bool down = ((uint32_t)channel->line.directions >> i & 1u) != 0u;
 		const struct passo_tracker_join *join = &trackers->join[i];
 		const bool moves = passo_trackers_path_moves(channel, i);
 
-		if (!axis_rests(&trackers->axis[i], join) || join->path_down != down
-		    || (moves && (join->went_down != down || join->turned)))
+		if (!axis_rests(&trackers->axis[i], join) || (moves && (join->went_down != down || join->turned)))
 			return false;
 	}
 	return true;

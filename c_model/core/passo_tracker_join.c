@@ -20,8 +20,7 @@ struct passo_tracker_join_result passo_tracker_join_wires(
 	const bool goes = wires->path_step && !against;
 	const bool turned = joins ? against
 	                  : goes  ? false
-	                          : join->turned && wires->path_down == join->path_down
-	                                && !(wires->path_moves && size == 0);
+	                          : join->turned && !(wires->path_moves && size == 0);
 
 	return (struct passo_tracker_join_result){.step_request = goes || joins,
 	    .direction = wires->path_down != turned,
@@ -39,7 +38,6 @@ void passo_tracker_join_clock(struct passo_tracker_join *join, const struct pass
 	if (wires->made)
 		owed += wires->made_down ? -1 : 1;
 	join->turned = result.direction != wires->path_down;
-	join->path_down = wires->path_down;
 	if (wires->path_moves)
 		join->went_down = wires->path_down;
 	join->owed = (int8_t)(wires->halt ? 0 : owed);
