@@ -74,7 +74,7 @@ function [12:0] axis_rule(input [2:0] address);
     | {13{address == AXIS_ENABLE}}               & (RULE_WRITE | 13'd0)
     | {13{address == AXIS_INPUTS}}               & (WITH_INPUTS & (RULE_WRITE | RULE_QUIET | 13'd6))
     | {13{address == AXIS_TRACKER_SPEED}}        & (WITH_TRACKERS & (RULE_WRITE | 13'd31))
-    | {13{address == AXIS_TRACKER_ACCELERATION}} & (WITH_TRACKERS & (RULE_WRITE | RULE_QUIET | RULE_NONZERO | 13'd31));
+    | {13{address == AXIS_TRACKER_ACCELERATION}} & (WITH_TRACKERS & (RULE_WRITE | RULE_QUIET | 13'd31));
 endfunction
 
 function [12:0] encoder_rule(input [2:0] address);

@@ -589,16 +589,15 @@ localparam CHANNEL_TRACKER_ENABLE_ENABLE_RESET = 8'h00;
 localparam CHANNEL_TRACKER_ENABLE_DEFINED      = 32'h000000FF;
 
 // Channel: Tracker state. One bit per axis.
-localparam CHANNEL_TRACKER_STATE                 = 8'h65;
-localparam CHANNEL_TRACKER_STATE_ENABLED_LSB     = 0;
-localparam CHANNEL_TRACKER_STATE_ENABLED_BITS    = 8;
-localparam CHANNEL_TRACKER_STATE_ENABLED_RESET   = 8'h00;
-localparam CHANNEL_TRACKER_STATE_MOVES_LSB       = 8;
-localparam CHANNEL_TRACKER_STATE_MOVES_BITS      = 8;
-localparam CHANNEL_TRACKER_STATE_MOVES_RESET     = 8'h00;
-localparam CHANNEL_TRACKER_STATE_AT_TARGET_LSB   = 16;
-localparam CHANNEL_TRACKER_STATE_AT_TARGET_BITS  = 8;
-localparam CHANNEL_TRACKER_STATE_AT_TARGET_RESET = 8'h00;
+localparam CHANNEL_TRACKER_STATE                = 8'h65;
+localparam CHANNEL_TRACKER_STATE_ENABLED_LSB    = 0;
+localparam CHANNEL_TRACKER_STATE_ENABLED_BITS   = 8;
+localparam CHANNEL_TRACKER_STATE_ENABLED_RESET  = 8'h00;
+localparam CHANNEL_TRACKER_STATE_MOVES_LSB      = 8;
+localparam CHANNEL_TRACKER_STATE_MOVES_BITS     = 8;
+localparam CHANNEL_TRACKER_STATE_MOVES_RESET    = 8'h00;
+localparam CHANNEL_TRACKER_STATE_AT_TARGET_LSB  = 16;
+localparam CHANNEL_TRACKER_STATE_AT_TARGET_BITS = 8;
 
 // Channel: Tracker position. Steps of an axis that are due to its tracker, rounded down while it moves;
 // wraps. A hard stop may drop up to 7 of them.

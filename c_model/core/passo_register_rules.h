@@ -211,7 +211,7 @@ static inline struct passo_rule passo_axis_rule(unsigned address)
 	case PASSO_AXIS_TRACKER_SPEED:
 		return (struct passo_rule){.write = true, .part = PASSO_PART_TRACKERS, .defined = 0xFFFFFFFFu, .maximum = 0xFFFFFFFFu};
 	case PASSO_AXIS_TRACKER_ACCELERATION:
-		return (struct passo_rule){.write = true, .needs_quiet = true, .nonzero = true, .part = PASSO_PART_TRACKERS, .defined = 0xFFFFFFFFu, .maximum = 0xFFFFFFFFu};
+		return (struct passo_rule){.write = true, .needs_quiet = true, .part = PASSO_PART_TRACKERS, .defined = 0xFFFFFFFFu, .maximum = 0xFFFFFFFFu};
 	default:
 		return (struct passo_rule){0};
 	}

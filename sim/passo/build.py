@@ -37,6 +37,7 @@ WAVES_FLAGS = ("--trace-fst", "--no-trace-params")  # without the constants of t
 MAKEFILE, MODEL, RUNTIME = f"V{TOP}.mk", f"V{TOP}__ALL.a", "libverilated.a"
 LEVELS = ("step_reset", "dir_reset", "enable_reset")  # parameters with a bit for each pin
 TOLD = ("clock_hz", "build")  # and those with a word
+PARTS = ("inputs", "encoders", "outputs", "trackers")
 WORD_BITS = 32
 
 
@@ -50,7 +51,7 @@ class Parameters(CoreParameters):
         queues = f"{self.line_queue_log2}_{self.ramp_queue_log2}"
         levels = (self.step_reset, self.dir_reset, self.enable_reset)
         reset = "_reset{:x}_{:x}_{:x}".format(*levels) if any(levels) else ""
-        parts = "".join(f"_{part}" for part in ("inputs", "encoders", "outputs") if getattr(self, part))
+        parts = "".join(f"_{part}" for part in PARTS if getattr(self, part))
         told = f"_{self.clock_hz}Hz_{self.build:x}" if self.clock_hz or self.build else ""
         return f"{self.channels}x{self.axes}_{self.tick_log2}_{queues}{parts}{reset}{told}"
 

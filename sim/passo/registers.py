@@ -350,7 +350,7 @@ class ChannelFollowStateWord(Word):
 class ChannelTrackerStateWord(Word):
     """Tracker state."""
 
-    at_target: int = bits(16, 8, "r", 0)  # It is at its target.
+    at_target: int = bits(16, 8, "r")  # It is at its target.
     moves: int = bits(8, 8, "r", 0)  # It moves.
     enabled: int = bits(0, 8, "r", 0)  # The tracker is enabled.
 
@@ -1015,7 +1015,6 @@ CHANNEL_TRACKER_STATE_MOVES_BITS = 8
 CHANNEL_TRACKER_STATE_MOVES_RESET = 0x00
 CHANNEL_TRACKER_STATE_AT_TARGET_LSB = 16
 CHANNEL_TRACKER_STATE_AT_TARGET_BITS = 8
-CHANNEL_TRACKER_STATE_AT_TARGET_RESET = 0x00
 
 # Channel: Tracker position. Steps of an axis that are due to its tracker, rounded down while it moves;
 # wraps. A hard stop may drop up to 7 of them.

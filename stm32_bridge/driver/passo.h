@@ -228,7 +228,7 @@ struct passo {
 	uint32_t oversampling;                      /* of the last plan */
 	uint64_t velocity_peak;                     /* of the last plan */
 	uint64_t velocity_top;                      /* highest peak of the plans of this motion */
-	bool has_inputs, has_outputs, has_encoders; /* the core has */
+	bool has_inputs, has_outputs, has_encoders, has_trackers; /* the core has */
 	bool follows;                               /* motions may be clocked by an encoder */
 	uint8_t spindle;                            /* its axis */
 	bool stop_time_known;                       /* the soft-stop time is configured */
