@@ -140,7 +140,9 @@ def joins_the_path(core: Core) -> None:
         substeps = random.randint(200, 2000)
         lines = []
         for last in (False, False, True):
-            steps = tuple(random.choice([0, substeps, -substeps, substeps // 3, -substeps // 7]) for _ in path)
+            steps = tuple(
+                random.choice([0, substeps, -substeps, substeps // 3, -substeps // 7]) for _ in path
+            )
             lines.append(Line(substeps, steps, last=last))
             path = [was + step for was, step in zip(path, steps, strict=True)]
         ticks = 3 * substeps * random.choice([30, 60, 200]) // core.tick + 1

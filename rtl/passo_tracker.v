@@ -13,8 +13,8 @@
 //               position += v * sign
 //   at rest with d < 0, sign changes; so there is a tick of rest before it turns.
 //
-// Promise: it never passes a target that stands, moves by no more than `speed` a tick, and changes that by no more
-// than the acceleration, whatever the targets do; the only exceptions are `halt`, which ends it at once, and a target
+// Promise: it never passes a stationary target, moves by no more than `speed` a tick, and changes that by no more
+// than the acceleration, whatever the targets do; the only exceptions are `halt`, which ends it immediately, and a target
 // that jumps behind it, which it passes while it slows down. At its target it makes no step.
 // Not enabled, or while `brake`, it slows down and rests; it does not begin to move while `hold`.
 // `halt` and `zero` clear `enabled`; `zero` and a reset set the positions to 0.
@@ -80,44 +80,44 @@ module passo_tracker #(
   wire                 turn_ends = slot == 5'd31;
   wire                 tick_ends = turn_ends && axis == {AXIS_BITS{1'b1}};
 
-  reg  [          2:0] line_q;  // of what is added in this clock
-  reg  [          1:0] word_q;
+  reg [2:0] line_q;  // of what is added in this clock
+  reg [1:0] word_q;
 
   // ---- settings of the axis whose turn it is, and what has been found ----
-  reg                  negative;  // sign
-  reg                  target_down;
-  reg                  brakes;
-  reg                  rests;  // v is 0
-  reg                  behind;  // d < 0
-  reg                  near;  // d < t
-  reg                  close;  // d < t + v + a
-  reg                  slow;  // v <= speed
-  reg                  slower;  // v + a <= speed
-  reg                  there;  // d is 0
-  reg                  stays_zero;  // the new v is 0
+  reg negative;  // sign
+  reg target_down;
+  reg brakes;
+  reg rests;  // v is 0
+  reg behind;  // d < 0
+  reg near;  // d < t
+  reg close;  // d < t + v + a
+  reg slow;  // v <= speed
+  reg slower;  // v + a <= speed
+  reg there;  // d is 0
+  reg stays_zero;  // the new v is 0
 
-  wire                 speeds = ~(brakes | close) & slower;
-  wire                 keeps = ~speeds & (rests | (~(brakes | near) & slow));
-  wire                 lands = stays_zero & ~(brakes | behind) & (rests ? close : near);
+  wire speeds = ~(brakes | close) & slower;
+  wire keeps = ~speeds & (rests | (~(brakes | near) & slow));
+  wire lands = stays_zero & ~(brakes | behind) & (rests ? close : near);
 
   // ---- clearing: v and t after a hard stop, all numbers after a reset or `zero`; for what is left of a tick and one ----
-  reg  [          1:0] clears;
-  reg                  clears_position;
-  wire                 clearing = clears != 2'd0;
-  reg                  cleared;  // in this turn
-  reg                  cleared_position;
+  reg  [1:0] clears;
+  reg        clears_position;
+  wire       clearing = clears != 2'd0;
+  reg        cleared;  // in this turn
+  reg        cleared_position;
 
   // ---- addresses ----
-  wire [ 4:0] old_velocity = {VELOCITY[4:2], odd, word[0]};
-  wire [ 4:0] new_velocity = {VELOCITY[4:2], ~odd, word[0]};
-  reg  [ 4:0] first;
-  reg  [ 4:0] second;
-  reg  [ 4:0] result;
-  reg         writes;
-  reg         subtracts;
-  reg         borrows;  // carry into the lowest word
-  reg         is_zero;  // write 0
-  reg         is_over;  // the second number has no words left, or does not count
+  wire [4:0] old_velocity = {VELOCITY[4:2], odd, word[0]};
+  wire [4:0] new_velocity = {VELOCITY[4:2], ~odd, word[0]};
+  reg  [4:0] first;
+  reg  [4:0] second;
+  reg  [4:0] result;
+  reg        writes;
+  reg        subtracts;
+  reg        borrows;  // carry into the lowest word
+  reg        is_zero;  // write 0
+  reg        is_over;  // the second number has no words left, or does not count
 
   always @* begin
     first     = {SCRATCH[4:2], word};
@@ -191,17 +191,17 @@ module passo_tracker #(
 
   // ---- settings of the host: target up, target down, speed, acceleration, upper halves at odd places ----
   // The upper half is written and copied first: a copy is whole, unless it begins with the write.
-  wire [ 2:0] number = bus_address[2:0];
-  reg         in_targets;  // decoded one clock ahead of the strobe
-  reg         in_axis;
-  reg         writes_upper;
-  reg         writes_lower;
-  reg  [ 4:0] host_place;
-  wire        copies = slot == 5'd2 || slot == 5'd3 || slot[4:1] == 4'd9 || slot[4:1] == 4'd10;
+  wire [2:0] number = bus_address[2:0];
+  reg in_targets;  // decoded one clock ahead of the strobe
+  reg in_axis;
+  reg writes_upper;
+  reg writes_lower;
+  reg [4:0] host_place;
+  wire copies = slot == 5'd2 || slot == 5'd3 || slot[4:1] == 4'd9 || slot[4:1] == 4'd10;
   wire [ 4:0] setting = slot[4] ? {slot[2] ? SPEED[4:1] : ACCELERATION[4:1], ~word[0]} : {TARGET[4:2], 1'b1, ~word[0]};
   wire [15:0] setting_word;
-  reg         copies_q;
-  reg         spoils;
+  reg copies_q;
+  reg spoils;
 
   // ---- memory ----
   wire [15:0] first_word;
@@ -277,7 +277,8 @@ module passo_tracker #(
     spoils       <= writes_upper;
     writes_lower <= writes_upper & ~rst;
     writes_upper <= bus_write & (in_targets | in_axis) & ~rst;
-    if (bus_write) host_place <= in_axis ? {bus_address[5:3], 1'b1, number[0]} : {number, 1'b0, bus_address[3]};
+    if (bus_write)
+      host_place <= in_axis ? {bus_address[5:3], 1'b1, number[0]} : {number, 1'b0, bus_address[3]};
     if (turn_ends) axis <= axis + 1'b1;
     if (tick_ends) odd <= ~odd;
 
@@ -297,10 +298,10 @@ module passo_tracker #(
     if (line_q == 3'd7 && word_q == 2'd1) parity <= parity ^ sum[15];
 
     if (rst) begin
-      slot         <= 5'd0;
-      axis         <= {AXIS_BITS{1'b0}};
-      odd          <= 1'b0;
-      writes_q     <= 1'b0;
+      slot     <= 5'd0;
+      axis     <= {AXIS_BITS{1'b0}};
+      odd      <= 1'b0;
+      writes_q <= 1'b0;
     end
   end
 
@@ -320,13 +321,14 @@ module passo_tracker #(
     this_sign    = 1'b0;
     this_turns   = 1'b0;
     this_down    = 1'b0;
-    for (i = 0; i < AXES; i = i + 1)
+    for (i = 0; i < AXES; i = i + 1) begin
       if (axis == i[AXIS_BITS-1:0]) begin
         this_enabled = enabled[i];
         this_sign    = signs[i];
         this_turns   = turns[i];
         this_down    = path_down[i];
       end
+    end
   end
 
   reg     write_enable;
@@ -344,13 +346,14 @@ module passo_tracker #(
       cleared_position <= clears_position;
     end
     step_made <= {AXES{1'b0}};
-    for (j = 0; j < AXES; j = j + 1)
+    for (j = 0; j < AXES; j = j + 1) begin
       if (turn_ends && axis == j[AXIS_BITS-1:0]) begin
         step_made[j] <= (parity ^ sum[0]) & ~clearing;
         signs[j]     <= negative ^ (rests & behind & ~brakes);
         turns[j]     <= ~stays_zero;
         at_target[j] <= there;
       end
+    end
     if (turn_ends) step_down <= negative;
     moves <= turns | (enabled & ~at_target & {AXES{~brake}});
 
@@ -381,10 +384,10 @@ module passo_tracker #(
     in_targets <= select && bus_address[7:4] == CHANNEL_TRACKER_TARGET_BASE[7:4] && {1'b0, number} < AXES[3:0];
     in_axis    <= select && bus_address[7:6] == CHANNEL_AXIS_BASE[7:6] && bus_address[2:1] == AXIS_TRACKER_SPEED[2:1]
                   && {1'b0, bus_address[5:3]} < AXES[3:0];
-    in_state      <= select && bus_address[7:1] == CHANNEL_TRACKER_ENABLE[7:1];
-    in_positions  <= select && bus_address[7:3] == CHANNEL_TRACKER_POSITION_BASE[7:3];
-    write_enable  <= bus_write && in_state && !number[0];
-    read_state    <= bus_read && in_state && number[0];
+    in_state <= select && bus_address[7:1] == CHANNEL_TRACKER_ENABLE[7:1];
+    in_positions <= select && bus_address[7:3] == CHANNEL_TRACKER_POSITION_BASE[7:3];
+    write_enable <= bus_write && in_state && !number[0];
+    read_state <= bus_read && in_state && number[0];
 
     // 0 unless it is addressed, for longer than a turn before it is read. Not torn: a read takes what was there before.
     takes_upper <= slot == 5'd21 && !bus_read;
@@ -404,8 +407,7 @@ module passo_tracker #(
   wire [7:0] at_target_padded = {{(8 - AXES) {1'b0}}, at_target};
   /* verilator lint_on UNUSEDSIGNAL */
 
-  assign read_data = (read_state ? {8'd0, at_target_padded, moves_padded, enabled_padded} : 32'd0)
-                     | position;
+  assign read_data = (read_state ? {8'd0, at_target_padded, moves_padded, enabled_padded} : 32'd0) | position;
 
 endmodule
 `resetall

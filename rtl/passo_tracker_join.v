@@ -38,16 +38,14 @@ module passo_tracker_join (
   reg signed [2:0] owed;  // steps of the tracker that wait, signed
   reg              turned;  // the axis went against the path last
 
-  wire             some = owed != 3'd0;
-  wire             several = owed[2] ? owed[1:0] != 2'd3 : owed[1];  // two or more
-  wire             many = owed == 3'sd3 || owed == -3'sd3;
-  wire             against = some & (owed[2] ^ path_down);
-  wire             cancels = path_step & against;
-  wire             may_join = some & ~path_step & (~waits | many);
-  wire             joins = may_join & (~against | ~path_moves | several);
-  wire             turns = joins               ? against :
-                           path_step & ~against ? 1'b0 :
-                           turned & ~(path_moves & ~some);
+  wire some = owed != 3'd0;
+  wire several = owed[2] ? owed[1:0] != 2'd3 : owed[1];  // two or more
+  wire many = owed == 3'sd3 || owed == -3'sd3;
+  wire against = some & (owed[2] ^ path_down);
+  wire cancels = path_step & against;
+  wire may_join = some & ~path_step & (~waits | many);
+  wire joins = may_join & (~against | ~path_moves | several);
+  wire turns = joins ? against : path_step & ~against ? 1'b0 : turned & ~(path_moves & ~some);
 
   assign step_request = (path_step & ~against) | joins;
   assign direction    = path_down ^ turns;

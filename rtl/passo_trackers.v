@@ -16,22 +16,22 @@ module passo_trackers #(
   input  wire            bus_write,
   input  wire            bus_read,
   input  wire            select,
-  input  wire [     7:0] bus_address,  // within the channel
-  input  wire [AXES-1:0] bus_bits,     // lower bits of the data
-  input  wire [    15:0] bus_half,     // one clock late the upper half of the data, then the lower one
+  input  wire [     7:0] bus_address,   // within the channel
+  input  wire [AXES-1:0] bus_bits,      // lower bits of the data
+  input  wire [    15:0] bus_half,      // one clock late the upper half of the data, then the lower one
   output wire [    31:0] read_data,
   // motion
-  input  wire            halt,         // hard stop, or stopped
-  input  wire            zero,         // strobe: only at rest
-  input  wire            brake,        // a soft stop is in progress
-  input  wire            hold,         // no motion may begin
-  output reg             busy,         // a tracker moves, is about to, or is owed a step
+  input  wire            halt,          // hard stop, or stopped
+  input  wire            zero,          // strobe: only at rest
+  input  wire            brake,         // a soft stop is in progress
+  input  wire            hold,          // no motion may begin
+  output reg             busy,          // a tracker moves, is about to, or is owed a step
   // path
   input  wire [AXES-1:0] path_steps,
   input  wire [AXES-1:0] path_down,
-  input  wire [AXES-1:0] path_moves,   // the line that runs moves the axis
+  input  wire [AXES-1:0] path_moves,    // the line that runs moves the axis
   // axes
-  input  wire [AXES-1:0] waits,        // a step waits
+  input  wire [AXES-1:0] waits,         // a step waits
   output wire [AXES-1:0] step_request,
   output wire [AXES-1:0] directions
 );

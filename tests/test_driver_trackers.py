@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Trackers of the driver (stm32_bridge/driver/passo_track.h): a second hand beside moves, stops and sessions."""
+"""Trackers of the driver (stm32_bridge/driver/passo_track.h): a second hand beside moves and stops."""
 
 import random
 from typing import Any

@@ -166,7 +166,7 @@ uint64_t passo_advance_surroundings_quiet(
 	    || line->load_start_q || line->underrun
 	    || !ramps_settled(&channel->ramp_queue, inputs->parameters)
 	    || !lines_settled(channel, inputs->parameters) || !passo_encoders_quiet(channel, inputs)
-	    || !passo_trackers_quiet(channel))
+	    || !passo_trackers_quiet(channel, inputs))
 		return 0;
 	const uint64_t clocks = passo_advance_least(
 	    passo_inputs_quiet(channel, inputs), passo_positions_quiet(&channel->positions));

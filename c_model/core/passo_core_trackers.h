@@ -13,7 +13,7 @@
 
 /* What the host has written, and what the unit takes of it once a turn. */
 struct passo_tracker_settings {
-	uint32_t target[2]; /* up, down: signed steps */
+	uint32_t target[2];           /* up, down: signed steps */
 	uint32_t speed, acceleration; /* UQ0.32 steps per tick, per tick^2 */
 };
 
@@ -52,7 +52,7 @@ struct passo_trackers {
 	bool busy;
 	bool writes_enable, writes_setting; /* bus write strobes, one clock late */
 	uint8_t written;                    /* address within the channel */
-	bool hold;          /* in the previous clock */
+	bool hold;                          /* in the previous clock */
 	struct passo_tracker_turn now;
 };
 
@@ -72,7 +72,6 @@ struct passo_tracker_join_result {
 
 struct passo_tracker_join_result passo_tracker_join_wires(
     const struct passo_tracker_join *join, const struct passo_tracker_join_wires *wires);
-void passo_tracker_join_clock(
-    struct passo_tracker_join *join, const struct passo_tracker_join_wires *wires);
+void passo_tracker_join_clock(struct passo_tracker_join *join, const struct passo_tracker_join_wires *wires);
 
 #endif

@@ -591,12 +591,12 @@ void passo_tracker_clock(struct passo_channel *channel, const struct passo_bus *
 bool passo_trackers_path_moves(const struct passo_channel *channel, unsigned axis);
 /* The step of an axis and its direction, of path and tracker; and a clock of all trackers. */
 struct passo_tracker_join_result passo_trackers_join(const struct passo_channel *channel, unsigned axis);
-void passo_trackers_clock(struct passo_channel *channel, const struct passo_bus *bus,
-    const struct passo_channel_wires *wires);
+void passo_trackers_clock(
+    struct passo_channel *channel, const struct passo_bus *bus, const struct passo_channel_wires *wires);
 /* Value of a register that is sampled in the clock of the response; 0 for others. */
 uint32_t passo_trackers_value(const struct passo_channel *channel, uint8_t address);
 /* Whether nothing changes but whose turn it is, and skipping such clocks. */
-bool passo_trackers_quiet(const struct passo_channel *channel);
+bool passo_trackers_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs);
 void passo_trackers_skip(struct passo_channel *channel, uint64_t clocks);
 
 void passo_motion_wires(const struct passo_channel *channel, const struct passo_channel_inputs *inputs,

@@ -175,7 +175,8 @@ static void clock_turn(
 	}
 }
 
-static void clock_clearing(struct passo_trackers *trackers, bool tick_ends, const struct passo_tracker_wires *wires)
+static void clock_clearing(
+    struct passo_trackers *trackers, bool tick_ends, const struct passo_tracker_wires *wires)
 {
 	if (tick_ends && trackers->clears != 0u) {
 		trackers->clears--;
@@ -254,20 +255,25 @@ static bool axis_rests(const struct passo_tracker_axis *axis, const struct passo
 	    && (there || !axis->enabled) && axis->shown == (uint32_t)(axis->position >> 32);
 }
 
-bool passo_trackers_quiet(const struct passo_channel *channel)
+bool passo_trackers_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs)
 {
 	const struct passo_trackers *trackers = &channel->trackers;
+	struct passo_channel_wires wires = {0};
 
 	if (!trackers->present)
 		return true;
 	if (trackers->clears != 0u || trackers->busy || trackers->writes_enable || trackers->writes_setting)
+		return false;
+	passo_admission_wires(&channel->admission, inputs->bus, inputs->tables_wanted, &wires);
+	if (trackers->hold != (wires.hold || passo_inputs_requests(channel, inputs).wait))
 		return false;
 	for (unsigned i = 0; i < channel->axes; i++) {
 		const bool down = ((uint32_t)channel->line.directions >> i & 1u) != 0u;
 		const struct passo_tracker_join *join = &trackers->join[i];
 		const bool moves = passo_trackers_path_moves(channel, i);
 
-		if (!axis_rests(&trackers->axis[i], join) || (moves && (join->went_down != down || join->turned)))
+		if (!axis_rests(&trackers->axis[i], join)
+		    || (moves && (join->went_down != down || join->turned)))
 			return false;
 	}
 	return true;

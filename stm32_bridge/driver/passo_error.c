@@ -12,7 +12,7 @@
 
 /* X(name, text) in the order of the codes; G, P and T are those of calls that PASSO_WITHOUT_GOTO,
  * PASSO_WITHOUT_PARTS and PASSO_WITHOUT_TRACKERS leave out. */
-#define ERRORS(X, G, P, T)                                                                                     \
+#define ERRORS(X, G, P, T)                                                                                   \
 	X(NOT_OPEN, "the core is not open; the error of passo_open() says why")                              \
 	X(UNITS, "the axis has no steps per unit, or the position overflows")                                \
 	X(TIMEOUT, "timeout; the motion continues")                                                          \
@@ -114,11 +114,10 @@
 #define OF_TRACKERS(part) part
 #endif
 
-static const char error_names[] =
-    "OK\0PENDING\0" ERRORS(PASSO_STRING_NAME, OF_GOTO(PASSO_STRING_NAME), OF_PARTS(PASSO_STRING_NAME),
-	OF_TRACKERS(PASSO_STRING_NAME));
-static const char error_texts[] = "no error\0the frame is still in flight\0" ERRORS(
-    PASSO_STRING_TEXT, OF_GOTO(PASSO_STRING_TEXT), OF_PARTS(PASSO_STRING_TEXT), OF_TRACKERS(PASSO_STRING_TEXT));
+static const char error_names[] = "OK\0PENDING\0" ERRORS(PASSO_STRING_NAME, OF_GOTO(PASSO_STRING_NAME),
+    OF_PARTS(PASSO_STRING_NAME), OF_TRACKERS(PASSO_STRING_NAME));
+static const char error_texts[] = "no error\0the frame is still in flight\0" ERRORS(PASSO_STRING_TEXT,
+    OF_GOTO(PASSO_STRING_TEXT), OF_PARTS(PASSO_STRING_TEXT), OF_TRACKERS(PASSO_STRING_TEXT));
 static const char refusal_names[] = REFUSALS(PASSO_STRING_NAME);
 static const char refusal_texts[] = REFUSALS(PASSO_STRING_TEXT);
 

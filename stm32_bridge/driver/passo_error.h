@@ -88,7 +88,8 @@ enum passo_error {
 
 	/* trackers */
 	PASSO_ERROR_NO_TRACKERS,    /* the core was built without trackers */
-	PASSO_ERROR_TRACKER_LIMITS, /* acceleration 0 or too small, or not below a speed below a step per tick */
+	PASSO_ERROR_TRACKER_LIMITS, /* acceleration 0 or too small, or not below a speed below a step per tick
+	                             */
 
 	/* how a motion ended */
 	PASSO_ERROR_LINE_UNDERRUN, /* stopped: a line ended and no other was queued */

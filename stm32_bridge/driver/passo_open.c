@@ -100,8 +100,8 @@ static bool is_kept_stopped(enum passo_error error)
 	return error == PASSO_ERROR_ESTOP || error == PASSO_ERROR_ALARM;
 }
 
-/* Trackers of a previous connection slow down; its motion that is queued, prepared or waiting for an edge must not start. A soft
- * stop flushes it immediately, or stops it if it has just started. */
+/* Trackers of a previous connection slow down; its motion that is queued, prepared or waiting for an edge
+ * must not start. A soft stop flushes it immediately, or stops it if it has just started. */
 static enum passo_error keep_from_beginning(struct passo *passo)
 {
 	enum passo_error error = passo_driver_untrack(passo, 0xFFu);

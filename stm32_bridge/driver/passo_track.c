@@ -57,8 +57,8 @@ enum passo_error passo_track_to(struct passo *passo, const struct passo_track *t
 		return error;
 	const uint32_t up = (uint32_t)target, down = up - track->backlash;
 	uint32_t enabled;
-	error = passo_driver_write(
-	    passo, (uint16_t)(PASSO_CHANNEL_TRACKER_TARGET_BASE + track->axis), &up, 1);
+	error =
+	    passo_driver_write(passo, (uint16_t)(PASSO_CHANNEL_TRACKER_TARGET_BASE + track->axis), &up, 1);
 	if (error == PASSO_OK)
 		error = passo_driver_write(
 		    passo, (uint16_t)(PASSO_CHANNEL_TRACKER_TARGET_DOWN_BASE + track->axis), &down, 1);
