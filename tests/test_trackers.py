@@ -14,6 +14,7 @@ from passo.engine import model_engine
 from passo.host import Channel
 from passo.link import Link
 
+from benchmarks import backlash
 from tests.test_core_advance import SEED, Session
 
 BUILDS = [
@@ -98,3 +99,11 @@ def test_limits_hold_at_the_pins_whatever_the_targets_do(number: int) -> None:
     after = np.cumsum(signs)[clocks > jumped]
     away = np.abs(after - target)
     assert np.all(np.diff(away[away.argmax() :]) <= 0)
+
+
+def test_backlash_makes_a_circle_round() -> None:
+    """Ten times as round at least, in no more time."""
+    plain, taken = backlash.machine(False), backlash.machine(True)
+    assert plain.roundness > 2 * backlash.PLAY_MM - 0.01
+    assert plain.roundness > 10 * taken.roundness
+    assert taken.seconds <= 1.02 * plain.seconds
