@@ -167,7 +167,7 @@ def test_places_of_plain_lines(browser: Browser) -> None:
     assert verdict_of(browser, text).startswith("error: line 2: no probe is fitted")
     assert (
         browser.value(ANSWER).splitlines()
-        == ["line 2: no probe is fitted: passo run --surface MAP.csv simulates one"] * 2
+        == ["line 2: no probe is fitted: a height map simulates one"] * 2
     )
 
 

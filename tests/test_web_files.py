@@ -12,6 +12,7 @@ import pytest
 from passo import web_python
 from passo.cli import main
 from passo.engine import model_engine
+from passo.expand.height_map import read_height_map
 from passo.failure import BadInputError
 from passo.machine_file import MachineFile, read_machine
 from passo.part import Played, core_of, play_part, read_part
@@ -129,7 +130,7 @@ def test_wrong_files_are_said_as_the_command_says_them(browser: Browser, tmp_pat
     ):
         folder = tmp_path / str(number)
         folder.mkdir()
-        wanted = refused(folder, machine, files).replace("fitted: --surface", "fitted: passo run --surface")
+        wanted = refused(folder, machine, files).replace("--surface MAP.csv simulates", "a height map simulates")
         dropped(browser, files)
         assert browser.value(ANSWER) == wanted
     assert wanted.splitlines()[-1] == "and 6 more lines"
@@ -185,6 +186,42 @@ def test_errors_of_subroutines_name_their_files(browser: Browser, tmp_path: Path
             read_part([folder / "part.ngc", folder / "second.ngc"], machine)
         dropped(browser, files)
         assert browser.value(ANSWER) == str(error.value).replace(f"{folder}/", "")
+
+
+MAP = "".join(f"{x},{y},{-1 - 0.01 * x - 0.02 * y}\n" for x in (-5, 20) for y in (-5, 30))
+PROBES = {"a.nc": "G21 G90 G0 X4 Y2\nM2\n", "b.ngc": "G38.2 Z-5 F300\nG92 Z0\nG0 Z[2-#5063]\n", "map.csv": MAP}
+
+
+@PYODIDE
+def test_a_height_map(either: Browser | Firefox, page: str, tmp_path: Path) -> None:
+    """Probes touch it, or Z follows it; a wrong one is said as the command says it."""
+    either.open("about:blank")
+    either.open(page, READY)
+    assert dropped(either, PROBES) == "done"
+    first, second, surface = written(tmp_path, PROBES)
+    machine = EXAMPLE / "machine.toml"
+    command = ["run", str(first), str(second), "--machine", str(machine), "--surface", str(surface)]
+    assert main([*command, "--out", str(tmp_path / "out")]) == 0
+    assert saved(either, "csv") == (tmp_path / "out" / "pulses.csv").read_bytes()
+    either.value("document.getElementById('map-use').value = 'follows'")
+    text = "G21 G90 G0 X0 Y0 Z1\nG1 Z0 F300\nG2 X10 Y20 R15\nG1 X1\n"
+    assert verdict_of(either, text, seconds=PATIENCE) == "done"
+    first.write_text(text)
+    made = tmp_path / "followed.nc"
+    assert main(["heightmap", str(first), "--map", str(surface), "--at-zero", "-o", str(made)]) == 0
+    assert saved(either, "plain") == made.read_bytes() and made.read_text().count("\n") > 5
+    link = either.value("toFragment(web.state)")
+    either.open("about:blank")
+    either.open(page + link, READY)
+    either.wait("web.done", PATIENCE)
+    assert either.value("[web.map.follows, web.map.text]") == [True, MAP]
+    assert verdict_of(either, "G0 X0 Y0 Z0\nG1 X99 F9").startswith("error: line 2: this motion leaves the ")
+    either.value("document.getElementById('map').value = '1,2,3'")
+    surface.write_text("1,2,3")
+    with pytest.raises(BadInputError) as error:
+        read_height_map(surface)
+    said = str(error.value).replace(str(surface), "height map")
+    assert verdict_of(either, "G0 X0") == f"error: {said}"
 
 
 def test_a_machine_and_tools_among_the_files(browser: Browser) -> None:

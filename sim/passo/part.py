@@ -208,8 +208,6 @@ def _read(
         raise BadInputError(f"{path}: {error.strerror}") from None
     name = STDIN if path == STANDARD_INPUT else path
     text = lines(data)
-    if surface and (missing := next((axis for axis in "XYZ" if axis not in machine.letters), "")):
-        raise BadInputError(f"{name}: the machine has no axis {missing} to probe a surface")
     if surface or needs_expanding(data):
         options = Options(machine.gcode, tools, at_zero=True, surface=surface, begin=begin)
         expanded = expand_file(name, options, _say, data)

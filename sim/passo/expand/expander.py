@@ -97,6 +97,9 @@ class _Run:
 
     def __init__(self, path: Path, options: Options, say: Callable[[str], None], data: bytes | None):
         self.options, self.say, self.path, self.folder = options, say, path, path.parent
+        letters = options.gcode.axis_letters
+        if options.surface and (missing := next((axis for axis in "XYZ" if axis not in letters), "")):
+            raise BadInputError(f"{path}: the machine has no axis {missing} to probe a surface")
         self.machine = Machine(options.gcode, options.tools, options.at_zero, options.begin)
         self.parameters = ProgramParameters(self.machine)
         self.output = Output(self.machine, options.surface)

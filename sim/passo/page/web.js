@@ -61,7 +61,7 @@ class Form {
             if (files.length) this.open(files);
         };
         by("files").onchange = ({ target }) => this.choose(Number(target.value));
-        by("tools").onchange = () => this.run();
+        by("tools").onchange = by("map").onchange = by("map-use").onchange = () => this.run();
         by("machine-text").oninput = () => this.readMachine();
         by("machine-text").onchange = () => this.run();
         by("machine-example").onclick = () => {
@@ -111,7 +111,7 @@ class Form {
         const gcode = this.language === GCODE;
         by("clock").hidden = gcode;
         by("plain").hidden = !gcode;
-        by("machine-file").hidden = by("tool-table").hidden = by("machine-told").hidden = !gcode;
+        by("machine-file").hidden = by("tool-table").hidden = by("height-map").hidden = by("machine-told").hidden = !gcode;
         by("lines").rows = gcode ? 12 : 4;
     }
 
@@ -171,12 +171,14 @@ class Form {
         by("machine-text").ariaInvalid = String(text !== "");
     }
 
-    // Programs, files of subroutines, a machine for G-code, a table of tools; of the latter two the last one.
+    // Programs, files of subroutines, a machine for G-code, a table of tools, a height map; of the latter three the last one.
     async open(files) {
         const has = (file, end) => file.name.toLowerCase().endsWith(end), own = end => files.filter(file => has(file, end)).at(-1);
-        const programs = files.filter(file => !has(file, ".toml") && !has(file, ".tbl")), machine = own(".toml"), tools = own(".tbl");
+        const programs = files.filter(file => ![".toml", ".tbl", ".csv"].some(end => has(file, end)));
+        const [machine, tools, map] = [".toml", ".tbl", ".csv"].map(own);
         if (machine) await this.openMachine(machine);
         if (tools) by("tools").value = await tools.text();
+        if (map) by("map").value = await map.text();
         if (programs.length) {
             const texts = await Promise.all(programs.map(async file => ({ name: file.name, text: await file.text() })));
             this.putFiles(texts.length > 1 ? inTurn(texts) : texts, GCODE);
@@ -201,13 +203,16 @@ class Form {
     get state() {
         const { language, edited } = this, lines = edited.length > 1 ? "" : this.text, machine = by("machine-text").value;
         const own = { ...(machine === this.example.machine ? {} : { machine }), ...(this.tools ? { tools: this.tools } : {}) };
+        if (this.map) own.map = this.map;
         if (edited.length > 1) own.files = edited.map(({ name, text }) => ({ name, text }));
         return { language, lines, clock: Number(by("clock").value), beside: by("beside").value, ...own };
     }
 
-    set state({ language, lines, clock, beside = "", machine = this.example.machine, tools = "", files = [] }) {
+    set state({ language, lines, clock, beside = "", machine = this.example.machine, tools = "", map = null, files = [] }) {
         this.putMachine(machine);
         by("tools").value = tools;
+        by("map").value = map?.text ?? "";
+        by("map-use").value = map?.follows ? "follows" : "";
         if (PROFILES.includes(beside)) by("beside").value = beside;
         if (files.length) this.putFiles(inTurn(files), GCODE);
         else this.put(lines, language === GCODE ? GCODE : CONSOLE);
@@ -239,28 +244,29 @@ class Form {
         if (this.language === GCODE) {
             const { machine } = this, numbers = [...machine.numbers];
             if (profile) numbers[PROFILE] = PROFILES.indexOf(profile);
-            return { kind: "play", files: this.programs, machine: { ...machine, numbers }, tools: this.tools };
+            return { kind: "play", files: this.programs, machine: { ...machine, numbers }, tools: this.tools, map: this.map };
         }
         const text = profile ? this.text.replace(/profile=\w+/g, `profile=${profile}`) : this.text;
         return { kind: "type", lines: text.split("\n").map(line => line.trim()).filter(Boolean), hz: Number(by("clock").value) };
     }
 
+    get map() { return by("map").value.trim() ? { text: by("map").value, follows: by("map-use").value !== "" } : null; }
     get tools() { return by("tools").value.trim() && by("tools").value; }
 
     // The files with those marked that plain lines are made of.
     get programs() {
-        return this.edited.map(file => ({ ...file, expands: Boolean(this.tools) || Advice.needsExpanding(file.text, RULES.gcode) }));
+        return this.edited.map(file => ({ ...file, expands: Boolean(this.tools || this.map) || Advice.needsExpanding(file.text, RULES.gcode) }));
     }
 
     get expands() { return this.language === GCODE && this.programs.some(file => file.plays && file.expands); }
 
     // The program that is shown as plain lines.
     async plain() {
-        const { machine, tools, programs: files } = this, { name, text, plays, expands } = files[Number(by("files").value)];
+        const { machine, tools, map, programs: files } = this, { name, text, plays, expands } = files[Number(by("files").value)];
         if (!plays) throw new BadValue(`${name} has subroutines: show the program that calls them`);
         if (!expands) return text;
         await this.runner.python();
-        const { lines, wrong } = await this.runner.ask({ kind: "expand", name, files, machine, tools });
+        const { lines, wrong } = await this.runner.ask({ kind: "expand", name, files, machine, tools, map });
         if (wrong) throw new BadValue(wrong);
         return lines.map(line => `${line}\n`).join("");
     }

@@ -2,8 +2,8 @@
 // The worker of the page: the core, its planner and its console as WebAssembly. It works in slices, between which it
 // hears the page, and answers with motions whose arrays move without being copied.
 //
-// In: {kind: "load", module, rules}, {kind: "python", packed}, {kind: "play", files, machine, tools}, {kind: "type", lines, hz},
-//     {kind: "expand", name, files, machine, tools}, {kind: "csv"}, {kind: "report"}, {kind: "cancel"}
+// In: {kind: "load", module, rules}, {kind: "python", packed}, {kind: "play", files, machine, tools, map}, {kind: "type", lines, hz},
+//     {kind: "expand", name, files, machine, tools, map}, {kind: "csv"}, {kind: "report"}, {kind: "cancel"}
 //     files: {name, text, plays, expands}, as of inTurn(); expands: plain lines of it are played
 // Out: {kind: "ready"}, {kind: "progress", share, seconds}, {kind: "progress", doing}, {kind: "result", text, wrong, motion},
 //      {kind: "expanded", said, wrong} or {.., lines, places}, {kind: "csv", blob}, {kind: "report", facts, edges}, {kind: "failure", text}
@@ -71,7 +71,7 @@ class Core {
         });
         const wrong = told.map(line => {
             const [, file, number, error, code] = /^(\d+):(\d+): ((?:error:(\d+))?.*)/.exec(line), program = programs[file];
-            const text = code ? advice.explain(Number(code), error, program.lines[number - 1]) : `${error}: passo run --surface MAP.csv simulates one`;
+            const text = code ? advice.explain(Number(code), error, program.lines[number - 1]) : `${error}: a height map simulates one`;
             return `${program.at(Number(number))}: ${text}`;
         });
         return more > 0 ? [...wrong, `and ${more} more lines`] : wrong;
@@ -79,13 +79,13 @@ class Core {
 
     // Checks programs of these files one after the other, each from where the one before ends, on a machine (struct
     // web_machine), expanded where they need that. Returns the texts of PRINT, the programs, and what ends this.
-    read(files, playing, machine, tools) {
+    read(files, playing, machine, tools, map) {
         this.said();
         new Float64Array(this.c.memory.buffer, this.c.machine(), machine.numbers.length).set(machine.numbers);
         this.c.reset();
         const programs = [], said = [];
         for (const { name, text, expands } of playing) {
-            const own = expands ? this.python.expand(name, files, machine, tools, programs.length && this.c.gcode()) : { said: [], lines: null };
+            const own = expands ? this.python.expand(name, files, machine, tools, programs.length && this.c.gcode(), map) : { said: [], lines: null };
             said.push(...own.said);
             if (own.wrong) return { said, programs, wrong: own.wrong };
             const whole = own.lines ? own.lines.join("\n") : text, lines = own.lines ?? text.split(/\r\n|\r|\n/);
@@ -100,15 +100,15 @@ class Core {
     }
 
     // The plain lines of one of several programs, where each is from, and the texts of PRINT; or what is wrong.
-    expanded(name, files, machine, tools) {
+    expanded(name, files, machine, tools, map) {
         const before = files.slice(0, files.findIndex(file => file.name === name)).filter(file => file.plays);
-        const { programs, wrong } = this.read(files, before, machine, tools);
-        return wrong ? { said: [], wrong } : this.python.expand(name, files, machine, tools, programs.length && this.c.gcode());
+        const { programs, wrong } = this.read(files, before, machine, tools, map);
+        return wrong ? { said: [], wrong } : this.python.expand(name, files, machine, tools, programs.length && this.c.gcode(), map);
     }
 
     // Plays G-code on a machine after reset. Returns what it said, what is wrong with it, and a motion or null.
-    async play(files, machine, tools) {
-        const { said, programs, wrong } = this.read(files, files.filter(file => file.plays), machine, tools);
+    async play(files, machine, tools, map) {
+        const { said, programs, wrong } = this.read(files, files.filter(file => file.plays), machine, tools, map);
         const played = wrong ? { wrong: [wrong], motion: null } : await this.playRead(programs, machine);
         const unread = wrong ? 0 : this.c.unread(), more = unread ? [`${unread} lines behind the end of the program are not read`] : [];
         return { ...played, text: said.length + more.length ? [...said, ...more, ...played.wrong].join("\n") : "" };
@@ -248,12 +248,12 @@ const answers = {
         core.python = await Python.load(packed, core.c);
         return { kind: "ready" };
     },
-    async play({ files, machine, tools }) {
+    async play({ files, machine, tools, map }) {
         if (files.some(file => file.plays && file.expands)) postMessage({ kind: "progress", doing: "expanding the program" });
-        return { kind: "result", ...await core.play(files, machine, tools) };
+        return { kind: "result", ...await core.play(files, machine, tools, map) };
     },
     type: async ({ lines, hz }) => ({ kind: "result", ...await core.type(lines, hz) }),
-    expand: async ({ name, files, machine, tools }) => ({ kind: "expanded", ...core.expanded(name, files, machine, tools) }),
+    expand: async ({ name, files, machine, tools, map }) => ({ kind: "expanded", ...core.expanded(name, files, machine, tools, map) }),
     report: async () => ({ kind: "report", ...await reportOf(core) }),
     csv: async () => ({ kind: "csv", blob: csvOf(core) }),
 };
