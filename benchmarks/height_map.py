@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """`passo heightmap` on plates with a closed form: `python -m benchmarks.height_map`.
 
-A program of lines and arcs in all modes follows a map of 100 by 80 mm that is probed every 10 mm. At 20 points of
-each motion the depth of cut is compared with that of the program. The exit status is 1 if it differs by more than
-the bound of a plate.
+A program of lines and arcs in all modes follows a map of 100 by 80 mm that is probed every 10 mm. At 20
+points of each motion the depth of cut is compared with that of the program. The exit status is 1 if it
+differs by more than the bound of a plate.
 """
 
 import sys

@@ -4,9 +4,9 @@
 Ten times G33.1 into the same hole, by a spindle whose speed wanders by 20 %, overshoots at the depth,
 reverses, and does so again at the top. Each step at the pins is compared with the angle of the spindle at
 its time, from the edges of its encoder. Where a pass begins and ends, the axis comes up to speed and to rest,
-off the thread by many counts: `off`. Docs/gcode.md allows 4 v^2/a of its way for that, above the work. The exit
-status is 1 if a step below is further than a count of the encoder from the thread, if the phase of a pass differs
-by more, or if the axis does not come to rest at the top.
+off the thread by many counts. docs/gcode.md allows 4 v^2/a of its way for that, above the work. The exit
+status is 1 if a step below is further than a count of the encoder from the thread, if the phase of a pass
+differs by more, or if the axis does not come to rest at the top.
 """
 
 import argparse
@@ -140,14 +140,17 @@ def main() -> int:
     print(f"M{PITCH} at {RPM} rpm, wandering by {WANDER} %, {COUNTS} counts a turn; to {RPM} rpm in "
           f"{START_UP * RPM / 1000:g} s")  # fmt: skip
     print(f"{APPROACH:g} mm to come up to speed and to rest")
-    print("pass  deepest, mm  error, counts  on the way up  phase, counts  at the end  off above  settled, mm")
+    print(
+        "pass  deepest, mm  error, counts  on the way up  phase, counts  at the end  off above  settled, mm"
+    )
     for number, one in enumerate(passes, 1):
         figures = f"{one.deepest:11.4f}  {one.error:13.3f}  {one.back:13.3f}  {one.phase:13.3f}"
         print(f"{number:4}  {figures}  {one.end:10}  {one.off:9.1f}  {one.settled:11.3f}")
     spread = max(one.phase for one in passes) - min(one.phase for one in passes)
     error = max(one.error for one in passes)
     settled = max(one.settled for one in passes)
-    print(f"greatest error {error:.3f} counts, within {WITHIN:g} from {settled:.2f} mm on; phases within {spread:.3f} counts of {COUNTS}")
+    print(f"within {WITHIN:g} count from {settled:.2f} mm below the top on")
+    print(f"greatest error {error:.3f} counts; phases within {spread:.3f} counts of {COUNTS}")
     good = error <= WITHIN and spread <= WITHIN and all(one.end == one.late == 0 for one in passes)
     return not (good and len(passes) == options.passes and not played.problems())
 

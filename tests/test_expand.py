@@ -306,7 +306,7 @@ AXES_OF_A_MACHINE = "".join(
 
 
 def test_a_program_begins_where_the_one_before_it_ends(tmp_path: Path) -> None:
-    """Position, offsets, tool, G92 and diameters are those behind it, as `passo run a.nc b.ngc` plays them."""
+    """Position, offsets, tool, G92 and diameters are those behind it, as `passo run a.nc b.ngc` plays."""
     path = tmp_path / "machine.toml"
     path.write_text("clock_hz = 8_000_000\n" + AXES_OF_A_MACHINE)
     machine = read_machine(path)
@@ -316,7 +316,11 @@ def test_a_program_begins_where_the_one_before_it_ends(tmp_path: Path) -> None:
         for file, text in zip(files, (first, second), strict=True):
             file.write_text(text)
         part = read_part(files, machine, {2: Tool(2, 0, 3.5)})
-        return [line.decode().strip() for line, at in zip(part.lines, part.places, strict=True) if at.path == files[1]]
+        return [
+            line.decode().strip()
+            for line, at in zip(part.lines, part.places, strict=True)
+            if at.path == files[1]
+        ]
 
     assert played("G0 X10 Y5\nM2\n", "G0 X[#5420+1] Z#5421") == ["G0 X11 Z5"]
     assert played("G10 L2 P1 X2\nG92 Y7\nT2 M6\nG43\n", "G0 X#5221 Y[#5210+#5400]") == ["G0 X2 Y3"]

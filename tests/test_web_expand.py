@@ -166,8 +166,7 @@ def test_places_of_plain_lines(browser: Browser) -> None:
     text = "o1 repeat [2]\nG91 G38.2 Z-1 F9\no1 endrepeat\nG0 X0"
     assert verdict_of(browser, text).startswith("error: line 2: no probe is fitted")
     assert (
-        browser.value(ANSWER).splitlines()
-        == ["line 2: no probe is fitted: a height map simulates one"] * 2
+        browser.value(ANSWER).splitlines() == ["line 2: no probe is fitted: a height map simulates one"] * 2
     )
 
 

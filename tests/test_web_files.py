@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Several files on the page to try Passo, as `passo run` takes them; and threads, in step with its spindle."""
+"""Several files on the page to try Passo, as `passo run` takes them; threads, in step with its spindle."""
 
 import json
 import shutil
@@ -61,9 +61,10 @@ def browser(kept: Browser, page: str) -> Browser:
 def dropped(browser: Browser | Firefox, files: dict[str, str]) -> str:
     """Drop files on the page; the verdict."""
     done = browser.value("web.done")
+    given = json.dumps(list(files.items()))
     browser.value(
         "(() => { const data = new DataTransfer();"
-        f"for (const [name, text] of {json.dumps(list(files.items()))}) data.items.add(new File([text], name));"
+        f"for (const [name, text] of {given}) data.items.add(new File([text], name));"
         "dispatchEvent(new DragEvent('drop', {dataTransfer: data})); })()"
     )
     browser.wait(f"web.done > {done}", PATIENCE)
@@ -92,7 +93,7 @@ PLAIN = {
 
 
 def test_files_play_in_turn(either: Browser | Firefox, page: str, tmp_path: Path) -> None:
-    """In the order of their names; each ends at its M2 or M30, and begins where the one before ends."""
+    """In the order of their names; each up to its M2 or M30, from where the one before ends."""
     either.open("about:blank")
     either.open(page, READY)
     assert dropped(either, PLAIN) == "done"
@@ -130,7 +131,9 @@ def test_wrong_files_are_said_as_the_command_says_them(browser: Browser, tmp_pat
     ):
         folder = tmp_path / str(number)
         folder.mkdir()
-        wanted = refused(folder, machine, files).replace("--surface MAP.csv simulates", "a height map simulates")
+        wanted = refused(folder, machine, files).replace(
+            "--surface MAP.csv simulates", "a height map simulates"
+        )
         dropped(browser, files)
         assert browser.value(ANSWER) == wanted
     assert wanted.splitlines()[-1] == "and 6 more lines"
@@ -189,7 +192,11 @@ def test_errors_of_subroutines_name_their_files(browser: Browser, tmp_path: Path
 
 
 MAP = "".join(f"{x},{y},{-1 - 0.01 * x - 0.02 * y}\n" for x in (-5, 20) for y in (-5, 30))
-PROBES = {"a.nc": "G21 G90 G0 X4 Y2\nM2\n", "b.ngc": "G38.2 Z-5 F300\nG92 Z0\nG0 Z[2-#5063]\n", "map.csv": MAP}
+PROBES = {
+    "a.nc": "G21 G90 G0 X4 Y2\nM2\n",
+    "b.ngc": "G38.2 Z-5 F300\nG92 Z0\nG0 Z[2-#5063]\n",
+    "map.csv": MAP,
+}
 
 
 @PYODIDE
@@ -229,7 +236,10 @@ def test_a_machine_and_tools_among_the_files(browser: Browser) -> None:
     lathe = (paths.examples / "gcode" / "lathe.toml").read_text()
     files = {"own.toml": lathe, "b.nc": "G0 X1", "a.nc": "G0 Z1", "mine.tbl": ""}
     assert dropped(browser, files) == "done"
-    assert browser.value("[web.machine.letters, web.edited.map(file => file.name)]") == ["XZ", ["a.nc", "b.nc"]]
+    assert browser.value("[web.machine.letters, web.edited.map(file => file.name)]") == [
+        "XZ",
+        ["a.nc", "b.nc"],
+    ]
 
 
 HEAD = """
@@ -255,7 +265,7 @@ def of_the_command(folder: Path, machine: MachineFile, text: str) -> Played:
 
 
 def is_played(browser: Browser | Firefox, played: Played, text: str) -> None:
-    """The page makes each step in the clock in which the command makes it: the spindle turns in the same way."""
+    """Each step of the page is in the clock of that of the command: the spindle turns in the same way."""
     assert verdict_of(browser, text, seconds=PATIENCE) == "done"
     for axis, (clocks, positions) in enumerate(zip(played.clocks, played.positions, strict=True)):
         own = f"passo.motion.axes.find(own => own.axis === {axis})"

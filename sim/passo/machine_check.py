@@ -24,7 +24,7 @@ from passo.failure import BadInputError, Failure
 from passo.grbl import Grbl
 from passo.grbl_setup import core_for
 from passo.machine_file import MachineFile, read_machine
-from passo.make_command import wired, core_of
+from passo.make_command import core_of, wired
 from passo.run import open_engine
 
 RESET, REPORT = b"\x18", b"?"

@@ -236,7 +236,7 @@ def _wires(machine: MachineFile, chosen: Board, host: dict[str, str]) -> Iterato
 
 
 def _unused(name: str) -> str:
-    """An input that floats keeps the inputs unknown: no motion begins. Encoders that are not there have no wire."""
+    """An input that floats keeps the inputs unknown: no motion begins. Encoders need no wire."""
     return "ground" if name in INPUT_NAMES and name not in ENCODER_PORTS else "not connected"
 
 

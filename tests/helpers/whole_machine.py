@@ -21,7 +21,7 @@ from passo.engine import Engine, model_engine
 from passo.gcode import AXIS_LETTERS, NANOMETERS
 from passo.grbl_setup import attach, core_for
 from passo.machine_file import MachineFile, read_machine
-from passo.make_command import AXIS_PORTS, IMAGE, OUTPUTS, SWITCH_PORTS, wired, core_of, definitions
+from passo.make_command import AXIS_PORTS, IMAGE, OUTPUTS, SWITCH_PORTS, core_of, definitions, wired
 from passo.part import read_part
 from passo.pins import INPUTS, Pin
 from passo.pins import OUTPUTS as CORE_OUTPUTS

@@ -66,7 +66,7 @@ class Machine:
     """Takes plain lines, and tells the values of the predefined parameters."""
 
     def __init__(self, settings: GcodeSettings, tools: dict[int, Tool], at_zero: bool, begin: Any = None):
-        """With `at_zero` the machine is known: at 0, without offsets, or as the `struct passo_gcode` of `begin`."""
+        """With `at_zero` the machine is known: at 0, without offsets, or as a `struct passo_gcode`."""
         self.tools, self.at_zero = tools, at_zero
         self.gcode = Gcode(settings)
         if begin is not None:

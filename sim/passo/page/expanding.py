@@ -24,9 +24,10 @@ def expand(
 ) -> str:
     """A program on a machine: its plain lines, where each is from, and the texts of PRINT, as JSON.
 
-    `files`: name and text of it and of those beside it, as JSON; `settings`: those of GcodeSettings; `tools`: a
-    table; `begin`: place of a `struct passo_gcode` behind another program, or 0: the machine is at 0; `height_map`:
-    one that probes touch, or that Z follows, or nothing. Of what cannot be expanded: what is wrong.
+    `files`: name and text of it and of those beside it, as JSON; `settings`: those of GcodeSettings; `tools`:
+    a table; `begin`: place of a `struct passo_gcode` behind another program, or 0: the machine is at 0;
+    `height_map`: one that probes touch, or that Z follows, or nothing. Of what cannot be expanded: what is
+    wrong.
     """
     said: list[str] = []
     os.chdir("/")
