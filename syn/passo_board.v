@@ -117,7 +117,7 @@ module passo_board #(
   wire [AXES-1:0] core_low = limit_low & ~LOW_AT_HOME | home & LOW_AT_HOME;
   wire [AXES-1:0] core_high = limit_high & ~HIGH_AT_HOME | home & HIGH_AT_HOME;
 
-  // An encoder that is not there stands still.
+  // An encoder that is not fitted never counts.
   wire [AXES-1:0] core_a = encoder_a & ENCODER_WIRED;
   wire [AXES-1:0] core_b = encoder_b & ENCODER_WIRED;
   wire [AXES-1:0] core_index = encoder_index & ENCODER_WIRED;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Several files at once: which of them are programs, and in which order.
+// Several files: which of them are programs, and in which order.
 "use strict";
 
 const OF_SUBROUTINES = /^\/?(?:n[0-9]+)?o(?:<([^>]*)>|([0-9]+))(sub|endsub)/;
