@@ -4,9 +4,9 @@
 Ten times G33.1 into the same hole, by a spindle whose speed wanders by 20 %, overshoots at the depth,
 reverses, and does so again at the top. Each step at the pins is compared with the angle of the spindle at
 its time, from the edges of its encoder. Where a pass begins and ends, the axis comes up to speed and to rest,
-off the thread by many counts. docs/gcode.md allows 4 v^2/a of its way for that, above the work, with the noise
-in v. The exit status is 1 if a step below is further than a count of the encoder from the thread, if the phase
-of a pass differs by more, or if the axis does not come to rest at the top.
+off the thread by many counts. docs/gcode.md allows 4 v^2/a of its way for that, above the work, with the
+noise in v. The exit status is 1 if a step below is further than a count of the encoder from the thread, if
+the phase of a pass differs by more, or if the axis does not come to rest at the top.
 """
 
 import argparse
