@@ -12,23 +12,23 @@
 `default_nettype none
 
 module passo_board #(
-  parameter AXES = 4,
-  parameter [31:0] CLOCK_HZ = 100_000_000,  // of the PLL; the core tells it to the host
-  parameter [31:0] BUILD = 0,  // of this bitstream; the core tells it to the host
-  parameter RUNNING_INVERTED = 0,
-  parameter IRQ_INVERTED = 0,
-  parameter LED_INVERTED = 0,
-  parameter STEPS_REGISTER = 0,  // parameters of the core, from here on
-  parameter INPUTS = 0,
-  parameter ENCODERS = 0,
-  parameter OUTPUTS = 0,
-  parameter OUTPUT_PINS = 8,  // of the core's 8 outputs
-  parameter [AXES-1:0] LOW_AT_HOME = {AXES{1'b0}},  // axes whose limit is at the pin of their home
-  parameter [AXES-1:0] HIGH_AT_HOME = {AXES{1'b0}},
-  parameter [AXES-1:0] ENCODER_WIRED    = {AXES{1'b1}},  // axes with an encoder; the others take no cells for one
-  parameter [AXES-1:0] STEP_RESET = {AXES{1'b0}},
-  parameter [AXES-1:0] DIR_RESET = {AXES{1'b0}},
-  parameter [AXES-1:0] ENABLE_RESET = {AXES{1'b1}}
+  parameter            AXES             = 4,
+  parameter [    31:0] CLOCK_HZ         = 100_000_000,   // of the PLL; the core tells it to the host
+  parameter [    31:0] BUILD            = 0,             // of this bitstream; the core tells it to the host
+  parameter            RUNNING_INVERTED = 0,
+  parameter            IRQ_INVERTED     = 0,
+  parameter            LED_INVERTED     = 0,
+  parameter            STEPS_REGISTER   = 0,             // parameters of the core, from here on
+  parameter            INPUTS           = 0,
+  parameter            ENCODERS         = 0,
+  parameter            OUTPUTS          = 0,
+  parameter            OUTPUT_PINS      = 8,             // of the core's 8 outputs
+  parameter [AXES-1:0] LOW_AT_HOME      = {AXES{1'b0}},  // axes whose limit is at the pin of their home
+  parameter [AXES-1:0] HIGH_AT_HOME     = {AXES{1'b0}},
+  parameter [AXES-1:0] ENCODER_WIRED    = {AXES{1'b1}},  // axes with an encoder, the only ones with cells
+  parameter [AXES-1:0] STEP_RESET       = {AXES{1'b0}},
+  parameter [AXES-1:0] DIR_RESET        = {AXES{1'b0}},
+  parameter [AXES-1:0] ENABLE_RESET     = {AXES{1'b1}}
 ) (
   input  wire                   oscillator,
   input  wire                   spi_sclk,
