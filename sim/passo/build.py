@@ -94,7 +94,8 @@ def preview_library() -> Path:
     """The planner's library with queues in place of link and core."""
     folders = (paths.planner, paths.gcode, paths.protocol, paths.driver, paths.grbl)
     link = ("passo_host.c", "passo_link_frame.c", "passo_link_retry.c")
-    own = [paths.engine / name for name in ("passo_preview.c", "passo_preview_core.c")]
+    names = ("passo_preview.c", "passo_preview_check.c", "passo_preview_core.c")
+    own = [paths.engine / name for name in names]
     files = [path for path in sources(*folders) if path.name not in link]
     return library("preview", [*folders, paths.engine], [*files, *own], "-O1", "-lm")
 
