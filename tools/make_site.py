@@ -48,9 +48,10 @@ def place(file: Path) -> Path:
     return name if file.suffix in (".md", ".png") else name.with_name(f"{name.name}.md")
 
 
-def stage(file: Path) -> list[Path]:
-    """Write the page of a file of the repository; return the files that it links to."""
+def relinked(file: Path, text: str) -> tuple[str, list[Path]]:
+    """The text of a page with links to pages in place of those to files, and the files that it links to."""
     linked: list[Path] = []
+    base = file if file.is_dir() else file.parent
 
     def to_page(found: re.Match[str]) -> str:
         target = (base / found[2]).resolve()
@@ -59,15 +60,23 @@ def stage(file: Path) -> list[Path]:
         linked.append(target)
         return found[1] + os.path.relpath(place(target), place(file).parent)
 
+    return LINK.sub(to_page, text), linked
+
+
+def stage(file: Path) -> list[Path]:
+    """Write the page of a file of the repository; return the files that it links to."""
     made = PAGES / place(file)
     made.parent.mkdir(parents=True, exist_ok=True)
     if file.suffix == ".png":
         shutil.copyfile(file, made)
         return []
-    base = file if file.is_dir() else file.parent
-    is_page = file.suffix == ".md" or file.is_dir()
+    if file.suffix == ".ipynb":  # made by stage_notebooks()
+        return [file.with_name(name) for name in re.findall(r"\]\(([\w./]+)", file.read_text("utf-8"))]
     text = file.read_text(encoding="utf-8") if file.suffix == ".md" else source_page(file)
-    made.write_text(LINK.sub(to_page, text) if is_page else text, encoding="utf-8")
+    linked: list[Path] = []
+    if file.suffix == ".md" or file.is_dir():
+        text, linked = relinked(file, text)
+    made.write_text(text, encoding="utf-8")
     return linked
 
 
@@ -97,6 +106,18 @@ def stage_api() -> None:
         (folder / f"{name}.md").write_text(f"# {name}\n\n::: {name}\n", encoding="utf-8")
         index.append(f"* [{name}]({name}.md)")
     (folder / "index.md").write_text("\n".join((*index, "")), encoding="utf-8")
+
+
+def stage_notebooks() -> None:
+    """The notebooks, executed, in the place of their source."""
+    from tools.notebook import NOTEBOOKS, executed, page
+
+    for notebook in NOTEBOOKS:
+        made = PAGES / place(notebook)
+        text, pictures = page(executed(notebook))
+        for name, data in pictures.items():
+            (made.parent / name).write_bytes(data)
+        made.write_text(relinked(notebook, text)[0], encoding="utf-8")
 
 
 def stage_web() -> None:
@@ -141,6 +162,7 @@ def main() -> int:
     shutil.rmtree(PAGES.parent, ignore_errors=True)
     stage_all()
     stage_api()
+    stage_notebooks()
     if not options.no_web:
         stage_web()
     status = build_html()
