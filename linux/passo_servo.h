@@ -60,11 +60,11 @@ enum passo_servo_problem {
 	PASSO_SERVO_LAG           /* the queue of the core is shorter than the lag */
 };
 
+/* Private. */
 struct passo_servo_line {
 	int32_t steps[PASSO_AXES_MAX];
 	uint32_t output;
 };
-
 enum passo_servo_phase { PASSO_SERVO_OFF, PASSO_SERVO_FILLS, PASSO_SERVO_RUNS };
 
 struct passo_servo {

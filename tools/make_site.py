@@ -19,6 +19,8 @@ from subprocess import PIPE, STDOUT
 
 from passo.toolchain import paths, short
 
+from tools.c_api import Interface
+
 PAGES = paths.results / "site" / "pages"
 HTML = paths.results / "site" / "html"
 CONFIGURATION = paths.tools / "mkdocs.yml"
@@ -26,7 +28,6 @@ TOP = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "LICENSE")
 LINK = re.compile(r"(\]\()([^)#\s]+)")
 LANGUAGES = {".v": "verilog", ".vhd": "vhdl", ".py": "python", ".c": "c", ".h": "c", ".cpp": "cpp"}
 LANGUAGES |= {".toml": "toml", ".core": "yaml"}
-HEADERS = (paths.driver / "passo.h", *sorted(paths.planner.glob("passo_*.h")))
 WEB = "web/index.html"
 
 
@@ -71,7 +72,7 @@ def stage(file: Path) -> list[Path]:
         shutil.copyfile(file, made)
         return []
     if file.suffix == ".ipynb":  # made by stage_notebooks()
-        return [file.with_name(name) for name in re.findall(r"\]\(([\w./]+)", file.read_text("utf-8"))]
+        return relinked(file, file.read_text(encoding="utf-8"))[1]
     text = file.read_text(encoding="utf-8") if file.suffix == ".md" else source_page(file)
     linked: list[Path] = []
     if file.suffix == ".md" or file.is_dir():
@@ -92,13 +93,18 @@ def stage_all() -> None:
 
 
 def stage_api() -> None:
-    """The Python package, a page for each module, and the headers of driver and planner."""
+    """The Python package, a page for each module, and the headers of the C interface (tools/c_api.py)."""
     folder = PAGES / "api"
     folder.mkdir(parents=True)
-    index = ["# API", "", "## C: driver and planner", ""]
-    for header in HEADERS:
+    index = ["# API", "", "## C: driver, planner, Linux", ""]
+    interface = Interface(PAGES.parent / "headers")
+    for header in interface.files:
         stage(header)
-        index.append(f"* [{header.name}](../{place(header)})")
+        made = folder / "c" / f"{header.name}.md"
+        made.parent.mkdir(exist_ok=True)
+        text = interface.page(header, f"../../{place(header).as_posix()}", "../..")
+        made.write_text(text, encoding="utf-8")
+        index.append(f"* [{header.name}](c/{made.name})")
     index += ["", "## Python: `passo`", ""]
     package = paths.sim / "passo"
     for module in sorted(set(package.rglob("*.py")) - set((package / "page").iterdir())):
