@@ -758,8 +758,11 @@ static bool open_core(void)
 	outputs = passo.has_outputs;
 	if (!check_encoders())
 		return false;
+	if (inputs == 0 && watchdog_ms > 0)
+		TELL("the core has no inputs, and so no watchdog: build it with INPUTS=1, or load with "
+		     "watchdog_ms=0 if the drives may stay on when the host dies\n");
 	if (inputs == 0)
-		return true;
+		return watchdog_ms == 0;
 	const uint64_t time = passo_clocks(&passo, (uint32_t)watchdog_ms * MS);
 	if (passo_configure_watchdog(&passo, time, time) == PASSO_OK)
 		return true;

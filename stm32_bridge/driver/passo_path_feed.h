@@ -42,8 +42,8 @@ struct passo_path_feed {
 	bool gave;                             /* the last poll sent lines or ramps */
 };
 
-/* Connects a path to an open channel; the planner learns how fast it can be sent. All three must stay valid. No
- * frame. */
+/* Connects a path to an open channel; the planner learns how fast it can be sent. All three must stay valid.
+ * No frame. */
 void passo_path_feed_open(struct passo_path_feed *feed, struct passo *passo, struct passo_path_planner *path);
 
 /* Calls passo_poll() and starts motions. A motion starts when the look-ahead is full, when the path has been

@@ -1,0 +1,283 @@
+# SPDX-License-Identifier: MIT
+"""Programs in a headless LinuxCNC, on the C model and on the Verilated core.
+
+    python -m benchmarks.linuxcnc
+
+Each command of each period is judged: the axes are within a step of it after the stated lag.
+"""
+
+import re
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from passo.engine import moves_of
+
+from benchmarks.servo import CLOCK_HZ, LATE, PERIOD, SCLK_HZ, SHARE_MAX, passes
+from tests.helpers.linuxcnc import EXAMPLE, Result, number_of, run_linuxcnc, share_of_wire
+
+ARCS = """
+G21 G90 G17 G64 P0.01
+G0 X60 Y60 Z74
+G1 F6000 X80
+G2 I15 J0
+G3 X110 Y90 I15 J15
+G1 X60 Y70
+G0 X50 Y50 Z73
+M2
+"""
+# a second of motion: a simulated core of RTL takes minutes for it
+SMALL_ARCS = "G21 G90 G17 G64 P0.01\nG1 F6000 X10 Y6\nG2 I4 J0\nG3 X14 Y10 I0 J4\nG1 X5 Y5 Z1\nM2\n"
+HOME_WHERE_IT_IS = {
+    **{f"HOME_{key} = {value}\n": "" for key, value in {"SEARCH_VEL": -50, "LATCH_VEL": -2}.items()},
+    **{"HOME_SEARCH_VEL = 20\n": "", "HOME_LATCH_VEL = 2\n": ""},
+    **{f"HOME = {value}\n": "HOME = 0\n" for value in (5, 75)},
+    "HOME_OFFSET = 80\n": "HOME_OFFSET = 0\n",
+}
+SMALL_HOME = "G21 G90\nG1 F600 X1 Y1 Z3.5\nM2\n"
+
+
+def small_machine() -> str:
+    """That of the example, 4 mm long: homing takes a second."""
+    text = re.sub(r"^travel = \d+", "travel = 4", (EXAMPLE / "machine.toml").read_text(), flags=re.M)
+    for key, value in {"seek": 20, "speed": 5, "pull_off": 0.5}.items():
+        text = re.sub(rf"^{key} = \d+(?= *(#|\n))", f"{key} = {value}", text, count=1, flags=re.M)
+    return text
+
+
+def short_lines(count: int) -> str:
+    """A program of short lines on a curve in the middle of the machine, and its end at X100 Y60."""
+    angles = np.linspace(0, 40 * np.pi, count)
+    radii = 40 + 8 * np.sin(7.3 * angles)
+    points = [
+        f"X{60 + radius * np.cos(angle):.4f} Y{60 + radius * np.sin(angle):.4f}"
+        for radius, angle in zip(radii, angles, strict=True)
+    ]
+    return "\n".join(
+        ["G21 G90 G64 P0.01", "G1 F6000 Z74", *(f"G1 {p}" for p in points), "G1 X100 Y60", "M2", ""]
+    )
+
+
+LATHE = """
+host = "linuxcnc"
+clock_hz = 16_000_000
+spindle_maximum = 300
+[spindle]
+counts = 4000
+[pins]
+step_high = "2 us"
+step_low = "2 us"
+[[axis]]
+name = "X"
+steps_per_mm = 200
+speed = 50
+acceleration = 500
+[[axis]]
+name = "Z"
+steps_per_mm = 200
+speed = 80
+acceleration = 500
+"""
+THREADS = """
+G21 G90 G18
+G0 X5 Z15
+M3 S300
+G33 Z8 K1
+G0 X6
+G0 Z16
+G0 X5
+G33 Z8 K1
+M9
+G61
+G0 X6
+G0 Z16
+G0 X5
+G33 Z8 K1
+M5
+G0 X8 Z2
+M2
+"""
+OFF_THREAD = 0.005  # mm
+PITCH = 0.0005  # of the pitch: the loop makes up a line or two
+TURNS = 5  # per s
+# LinuxCNC begins in the period after the index, and takes the phase, in whole periods, when its axis has the
+# speed of the thread; a line of the core is one more
+OFF_BEGIN = 2 * TURNS * PERIOD  # turns
+# by then the axis is behind the spindle by v^2 / (2 a); in G64 LinuxCNC halves a if it knows no move behind
+# the pass, as before M9
+BEHIND = TURNS**2 / (2 * 500) * np.array([1, 2, 1])
+TICK = 160  # clocks: less than a step
+ALIGN = range(0, 1000)  # periods from the start of the core to the first sample
+
+
+def begun(found: Result, scales: list[float]) -> float:
+    """The clock of the core at the first sample, by the counts of the core in all of them."""
+    clocks = round(PERIOD * CLOCK_HZ)
+    places = found.samples[:, len(scales) :] * scales
+    moving = np.flatnonzero(np.any(np.diff(places, axis=0), axis=1))
+    chosen = moving[np.linspace(0, len(moving) - 1, 400).astype(int)]
+
+    made = [np.concatenate([[0], np.cumsum(moves_of(found.events, axis))]) for axis in range(len(scales))]
+    steps = np.stack(made, axis=1)
+
+    def off(begin: float) -> float:
+        then = np.searchsorted(found.events["clock"], begin + chosen * clocks, "right")
+        return float(np.abs(steps[then] - places[chosen]).sum())
+
+    best = min((number * clocks for number in ALIGN), key=off)
+    return min((best + part * clocks // 64 for part in range(-64, 65)), key=off)
+
+
+def delays(found: Result, scales: list[float]) -> np.ndarray:
+    """Periods from each command that moves to when all axes are within a step of it; NaN: never."""
+    commands = np.floor(found.samples[:, : len(scales)] * scales + 0.5).astype(int)
+    moved = np.flatnonzero(np.any(np.diff(commands, axis=0, prepend=commands[:1]) != 0, axis=1))
+    return passes(found.events, commands, begun(found, scales), PERIOD * CLOCK_HZ, TICK)[moved]
+
+
+def is_in_step(found: Result, scales: list[float]) -> bool:
+    """Each command is reached, at most LATE periods after the lag that the component states."""
+    lag = number_of(found.pins["passo.0.queue.lag"])
+    late = delays(found, scales)
+    return bool(np.all(late <= lag + LATE))
+
+
+@dataclass(frozen=True)
+class Threads:
+    """Passes of G33 by the pins: place against the angle of the spindle."""
+
+    pitches: list[float]
+    off: float  # mm from the even thread of a pass
+    phases: list[float]  # turns by which a pass is off the first one, less what LinuxCNC makes of it
+
+
+def threads(found: Result) -> Threads:
+    """Those of THREADS, of axis 1, from place 14 to 9."""
+    steps = moves_of(found.events, 1)
+    turns = np.interp(found.events["clock"][steps != 0], found.turns, np.arange(len(found.turns)))
+    places = np.cumsum(steps[steps != 0]) / 200
+    inside = (places > 9) & (places < 14) & (np.diff(places, append=0) < 0)
+    passes = [one for one in np.split(np.arange(len(places)), np.flatnonzero(~inside)) if len(one) > 900]
+    fits = [np.polyfit(turns[one[1:]], places[one[1:]], 1) for one in passes]
+    off = [
+        np.abs(turns[one[1:]] * pitch + at - places[one[1:]]).max()
+        for one, (pitch, at) in zip(passes, fits, strict=True)
+    ]
+    begins = np.array([(12 - at) / pitch for pitch, at in fits])
+    phases = (begins - BEHIND[: len(begins)] - begins[0] + BEHIND[0] + 0.5) % 1 - 0.5
+    return Threads([float(pitch) for pitch, _ in fits], float(max(off)), phases.tolist())
+
+
+@dataclass(frozen=True)
+class Program:
+    """A program, and where it ends."""
+
+    name: str
+    text: str
+    end: list[float]
+    scales: list[float] = field(default_factory=lambda: [80, 80, 400])
+    engine: str = "model"
+    changes: dict[str, str] = field(default_factory=dict)
+    machine: str = ""
+
+
+def programs(lines: int = 20_000) -> Iterator[Program]:
+    """On the model, then short ones on model and Verilated core, compared on each edge."""
+    lathe: dict[str, Any] = {"end": [8, 2], "scales": [200, 200], "machine": LATHE}
+    yield Program("homing, circle and arcs at 6,000 mm/min", ARCS, [50, 50, 73])
+    yield Program("three passes of G33", THREADS, **lathe)
+    yield Program(f"{lines:,} short lines", short_lines(lines), [100, 60, 74])
+    both: dict[str, Any] = {"engine": "both", "changes": HOME_WHERE_IT_IS}
+    yield Program("circle and arcs", SMALL_ARCS, [5, 5, 1], **both)
+    yield Program("homing", SMALL_HOME, [1, 1, 3.5], engine="both", machine=small_machine())
+
+
+@dataclass(frozen=True)
+class Figures:
+    """Of a program."""
+
+    program: Program
+    said: list[str]  # by LinuxCNC
+    exact: bool  # it ended, where it should
+    late: float  # periods from a command to the axes within a step of it, at most
+    lag: int  # periods
+    following: float  # mm, the greatest following error
+    edges: int  # at the STEP pins
+    threads: Threads | None
+
+    @property
+    def is_good(self) -> bool:
+        """All promises are kept."""
+        return (
+            self.exact
+            and not self.said
+            and self.late <= self.lag + LATE
+            and (not self.threads or fits(self.threads))
+        )
+
+
+def fits(found: Threads) -> bool:
+    """Three passes in step with the spindle."""
+    steady = all(abs(pitch + 1) <= PITCH for pitch in found.pitches)
+    return (
+        len(found.phases) == 3
+        and steady
+        and found.off < OFF_THREAD
+        and max(map(abs, found.phases)) < OFF_BEGIN
+    )
+
+
+def measure(program: Program) -> Figures:
+    """Run it."""
+    found = run_linuxcnc(program.text, program.engine, program.changes, program.machine)
+    done = found.homed and found.ended
+    exact = done and bool(np.abs(np.array(found.positions) - program.end).max() < 1e-9)
+    axes = range(len(program.scales))
+    return Figures(
+        program,
+        found.said,
+        exact,
+        float(delays(found, program.scales).max()) if done else np.nan,
+        round(number_of(found.pins.get("passo.0.queue.lag", "0"))),
+        max(found.ferror or [np.nan]),
+        sum(int(np.count_nonzero(moves_of(found.events, axis))) for axis in axes),
+        threads(found) if done and program.text == THREADS else None,
+    )
+
+
+def row(found: Figures) -> str:
+    """What is printed."""
+    engine = "model" if found.program.engine == "model" else "model and Verilated core"
+    end = "end exact" if found.exact else "WRONG"
+    said = "; ".join(found.said) or "no fault"
+    text = f"LinuxCNC, {found.program.name}, {engine}: {end}, {said}, {found.edges:,} edges, "
+    text += f"each command within a step after at most {found.late:.1f} periods (lag {found.lag}), "
+    text += f"following error {found.following:.2f} mm"
+    if found.threads:
+        phases = ", ".join(f"{phase:+.4f}" for phase in found.threads.phases)
+        text += f"; off the thread {1000 * found.threads.off:.1f} um, phases {phases} turns"
+    return text
+
+
+def wire() -> tuple[str, bool]:
+    """The share that six axes with inputs take."""
+    share = share_of_wire()
+    text = f"LinuxCNC, six axes with inputs at 1 kHz: {share:.1%} of {SCLK_HZ / 1e6:g} MHz"
+    return text, share <= SHARE_MAX
+
+
+def main() -> int:
+    """Print the figures; 1 if one of them is not as promised."""
+    text, kept = wire()
+    print(text, flush=True)
+    for program in programs():
+        found = measure(program)
+        print(row(found), flush=True)
+        kept = kept and found.is_good
+    return int(not kept)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
