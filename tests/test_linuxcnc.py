@@ -2,6 +2,7 @@
 """The HAL component in a headless LinuxCNC (tools/setup.sh linuxcnc) at a simulated core."""
 
 import re
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -184,6 +185,28 @@ def test_the_page_lists_the_pins() -> None:
 
 def test_it_compiles_without_a_warning() -> None:
     assert component().exists()
+
+
+def test_it_compiles_for_2_10(tmp_path: Path) -> None:
+    """Against declarations of its HAL alone, in which pins and parameters are opaque."""
+    folders = (
+        paths.tests / "linuxcnc" / "hal_2_10",
+        paths.linux,
+        paths.driver,
+        paths.planner,
+        paths.protocol,
+    )
+    flags = ["-std=gnu11", "-Wall", "-Wextra", "-Werror", "-Wno-unused-variable", "-DRTAPI", "-DUSPACE"]
+    command = ["cc", *flags, *(f"-I{folder}" for folder in folders), "-c", COMPONENT / "passo.c"]
+    for defines in ([], ["-DHAL_BOOL=1", "-DHAL_API_BEFORE_ITS_VERSION"]):
+        done = subprocess.run(
+            [*command, *defines, "-o", tmp_path / "passo.o"], capture_output=True, text=True
+        )
+        assert done.returncode == 0, done.stderr
+    known = subprocess.run(["nm", "-u", tmp_path / "passo.o"], capture_output=True, text=True).stdout.split()
+    used = {name for name in known if name.startswith("hal_")}
+    assert {"hal_pin_new_bool", "hal_param_new_real", "hal_get_si32", "hal_set_ui32"} <= used
+    assert not {name for name in used if re.match("hal_(pin|param)_(bit|float|s32|u32)_new", name)}
 
 
 def test_the_example_is_what_make_makes(tmp_path: Path) -> None:

@@ -62,7 +62,7 @@ def test_a_link_that_leads_nowhere_is_an_error(folder: Path, what: str, capfd: p
 
 
 def test_the_interface_in_c(tmp_path: Path) -> None:
-    """Each function, type and macro of the headers has a description; private ones and members are not there."""
+    """Each function, type and macro has a description; no page shows what is private."""
     interface = Interface(tmp_path)
     names = {file.name for file in interface.files}
     assert {"passo.h", "passo_linux.h", "passo_servo.h", "passo_path.h", "passo_plan.h"} <= names
@@ -83,7 +83,9 @@ def test_a_function_without_a_description(tmp_path: Path, monkeypatch: pytest.Mo
     """It is found; so is a comment that Doxygen does not understand."""
     header = tmp_path / "passo_one.h"
     monkeypatch.setattr(c_api, "headers", lambda: [header])
-    header.write_text("/* SPDX-License-Identifier: MIT\n * One. */\n\n/* Two. */\nint two(void);\n\nint one(void);\n")
+    header.write_text(
+        "/* SPDX-License-Identifier: MIT\n * One. */\n\n/* Two. */\nint two(void);\n\nint one(void);\n"
+    )
     assert Interface(tmp_path / "xml").undescribed() == ["one"]
     header.write_text("/* SPDX-License-Identifier: MIT\n * One. */\n\n/* @param lost */\nint one(void);\n")
     with pytest.raises(Failure, match="Doxygen: "):

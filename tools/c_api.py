@@ -2,8 +2,8 @@
 """Pages of the C interface: headers of driver, planner and Linux host, read by Doxygen, as Markdown.
 
 Comments of the headers are plain ones. A copy marks them for Doxygen: at the top of a file, above what they
-describe, and behind a member. What stands directly below a described function shares its description, as in
-the header. Members below `private` are left out.
+describe, and behind a member. A declaration directly below a described one shares its description, as in the
+header. Members below `private` are left out.
 """
 
 import re
@@ -97,7 +97,7 @@ class Entry:
         return bool(self.text or any(text for rows in self.tables.values() for _, text in rows))
 
     def join(self, other: "Entry") -> None:
-        """Describe one that stands below."""
+        """Describe the one below as well."""
         self.names += other.names
         self.code += other.code
         self.tables |= other.tables
@@ -159,7 +159,7 @@ class Interface:
         return [name for entry in entries if not entry.is_described for name in entry.names]
 
     def _joined(self, file: Path) -> list[Entry]:
-        """What stands directly below another one, without a comment of its own, shares its description."""
+        """One directly below another one, without a comment of its own, shares its description."""
         lines, found = file.read_text("utf-8").split("\n"), list[Entry]()
         compound = self._compounds[file.name]
         all_of_it = [self._struct(self._tree(one.get("refid", ""))) for one in compound.iter("innerclass")]

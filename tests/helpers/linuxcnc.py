@@ -32,7 +32,7 @@ EXAMPLE = paths.examples / "linuxcnc"
 MODULES = Path("/usr/lib/linuxcnc/modules")
 HEADERS = Path("/usr/include/linuxcnc/hal.h")
 NOBODY = 65534
-SECONDS_MAX = 900
+SECONDS_MAX = 450  # of homing, and of a program
 SAMPLES = "samples.txt"
 
 
@@ -118,13 +118,13 @@ def prepare(folder: Path, machine: MachineFile, program: str, device: str, chang
     folder.chmod(0o777)
 
 
-def _call(folder: Path, *command: str) -> subprocess.CompletedProcess[str]:
+def _call(folder: Path, *command: str, seconds: int = SECONDS_MAX) -> subprocess.CompletedProcess[str]:
     # it refuses to run as root
     user = ["setpriv", f"--reuid={NOBODY}", f"--regid={NOBODY}", "--clear-groups"]
     called = subprocess.Popen(
         [*(user if os.geteuid() == 0 else []), *command],
         cwd=folder,
-        env=os.environ | {"HOME": str(folder)},
+        env=os.environ | {"HOME": str(folder), "SECONDS_MAX": str(seconds)},
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -132,7 +132,7 @@ def _call(folder: Path, *command: str) -> subprocess.CompletedProcess[str]:
         start_new_session=True,  # all that it starts ends with it
     )
     try:
-        out, err = called.communicate(timeout=SECONDS_MAX)
+        out, err = called.communicate(timeout=2 * seconds)
     except subprocess.TimeoutExpired:
         os.killpg(called.pid, signal.SIGKILL)
         called.communicate()
@@ -210,10 +210,11 @@ def run_linuxcnc(
     changes: dict[str, str] | None = None,
     text: str = "",
     per_turn: int = 0,
+    seconds: int = SECONDS_MAX,
 ) -> Result:
     """Home and run a program; `changes`: of the text of its files; `text`: of another machine file.
 
-    `per_turn`: counts from index to index of the encoders of motors.
+    `per_turn`: counts from index to index of the encoders of motors; `seconds`: that the program may take.
     """
     with alone() as folder:
         installed()
@@ -225,7 +226,7 @@ def run_linuxcnc(
         with served(engine, machine, per_turn, rigs.extend) as core:
             with serving(core, place, keep=True) as server:
                 place.chmod(0o777)
-                done = _call(folder, "linuxcnc", "machine.ini")
+                done = _call(folder, "linuxcnc", "machine.ini", seconds=seconds)
             events, turns = server.events, indexes(*rigs[0]) if rigs else np.empty(0)
         logs = [file.read_text() for file in folder.glob("linuxcnc_*.txt")]
         samples = read_samples(folder / SAMPLES) if (folder / SAMPLES).exists() else np.empty(0)
