@@ -42,6 +42,10 @@ def test_the_site(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     found = json.loads((html / "search" / "search_index.json").read_text())["docs"]
     assert any("ENABLE_RESET" in page["text"] for page in found)
     assert "Queue a move, as" in (html / "api" / "passo.driver.html").read_text()
+    machine = (html / "api" / "passo.host_machine.html").read_text()
+    assert "as fast as the axes can" in machine and "Raises BadInputError" in machine
+    index = (html / "api" / "index.html").read_text()
+    assert all(f'href="passo.{module}.html"' in index for module in make_site.FOR_PROGRAMS.values())
     assert "passo_home" in (html / "stm32_bridge" / "driver" / "passo.h.html").read_text()
     assert 'id="passo_resume"' in (html / "api" / "c" / "passo.h.html").read_text()
     assert any("Takes over from rest, clears a stopped channel" in page["text"] for page in found)

@@ -29,6 +29,12 @@ LINK = re.compile(r"(\]\()([^)#\s]+)")
 LANGUAGES = {".v": "verilog", ".vhd": "vhdl", ".py": "python", ".c": "c", ".h": "c", ".cpp": "cpp"}
 LANGUAGES |= {".toml": "toml", ".core": "yaml"}
 WEB = "web/index.html"
+FOR_PROGRAMS = {
+    "Machine: plan, run, home": "host_machine",
+    "motions and their results": "motion",
+    "speeds and limits of a plan": "course",
+    "errors": "failure",
+}
 
 
 def source_page(source: Path) -> str:
@@ -105,7 +111,9 @@ def stage_api() -> None:
         text = interface.page(header, f"../../{place(header).as_posix()}", "../..")
         made.write_text(text, encoding="utf-8")
         index.append(f"* [{header.name}](c/{made.name})")
-    index += ["", "## Python: `passo`", ""]
+    index += ["", "## Python: for programs", ""]
+    index += [f"* [{name}](passo.{module}.md)" for name, module in FOR_PROGRAMS.items()]
+    index += ["", "## Python: all modules", ""]
     package = paths.sim / "passo"
     for module in sorted(set(package.rglob("*.py")) - set((package / "page").iterdir())):
         name = ".".join(module.relative_to(package.parent).with_suffix("").parts).removesuffix(".__init__")
