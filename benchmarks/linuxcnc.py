@@ -29,8 +29,8 @@ M2
 
 
 def short_lines(count: int) -> str:
-    """A program of short lines on a curve in the middle of the machine, and its end at X100 Y60."""
-    angles = np.linspace(0, 40 * np.pi, count)
+    """A program of lines of 0.25 mm on a curve in the middle of the machine, and its end at X100 Y60."""
+    angles = np.linspace(0, 40 * np.pi * count / 20_000, count)
     radii = 40 + 8 * np.sin(7.3 * angles)
     points = [
         f"X{60 + radius * np.cos(angle):.4f} Y{60 + radius * np.sin(angle):.4f}"
