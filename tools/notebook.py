@@ -17,7 +17,7 @@ PROGRESS = re.compile(r"^(Building|Built) .*\n", re.M)  # of the first use of a 
 
 def executed(notebook: Path) -> Any:
     """A notebook with its outputs, executed in its folder. Raises CellExecutionError if a cell fails."""
-    found = nbformat.read(notebook, nbformat.NO_CONVERT)
+    found: Any = nbformat.read(notebook, nbformat.NO_CONVERT)  # type: ignore[no-untyped-call]
     client = NotebookClient(
         found,
         timeout=SECONDS_MAX,
@@ -32,5 +32,6 @@ def page(notebook: Any) -> tuple[str, dict[str, bytes]]:
         for output in cell.get("outputs", []):
             if "text" in output:
                 output["text"] = PROGRESS.sub("", output["text"])
-    text, resources = MarkdownExporter().from_notebook_node(notebook)
+    exporter: Any = MarkdownExporter()  # type: ignore[no-untyped-call]
+    text, resources = exporter.from_notebook_node(notebook)
     return text, resources["outputs"]
