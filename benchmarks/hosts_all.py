@@ -153,7 +153,7 @@ def wrong_input(options: Options) -> Iterator[Row]:
     """The tests of each."""
     for what, (file, test) in WRONG.items():
         node = f"tests/test_{file}.py::{test}"
-        command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-n", "0", node]
+        command = [sys.executable, "-m", "pytest", "-q", "-n", "0", node]
         done = subprocess.run(command, cwd=paths.root, capture_output=True, text=True)
         told = done.stdout.strip().splitlines()[-1].split(" in ")[0]
         kept = done.returncode == 0 and "skipped" not in told

@@ -163,7 +163,7 @@ class Program:
     engine: str = "both"  # model and Verilated core, compared on each edge
 
 
-BOTH = 2000  # lines on model and Verilated core
+BOTH = 500  # lines on model and Verilated core
 
 
 def programs(lines: int = 20_000) -> dict[str, Program]:
