@@ -27,17 +27,16 @@ M2
 """
 
 
-def short_lines(count: int) -> str:
-    """A program of lines of 0.25 mm on a curve in the middle of the machine, and its end at X100 Y60."""
+def short_lines(count: int, place: int = 60, size: float = 1) -> str:
+    """A program of lines of 0.25 mm, times `size`, on a curve around a place of X and Y, to its right end."""
     angles = np.linspace(0, 40 * np.pi * count / 20_000, count)
-    radii = 40 + 8 * np.sin(7.3 * angles)
+    radii = size * (40 + 8 * np.sin(7.3 * angles))
     points = [
-        f"X{60 + radius * np.cos(angle):.4f} Y{60 + radius * np.sin(angle):.4f}"
+        f"X{place + radius * np.cos(angle):.4f} Y{place + radius * np.sin(angle):.4f}"
         for radius, angle in zip(radii, angles, strict=True)
     ]
-    return "\n".join(
-        ["G21 G90 G64 P0.01", "G1 F6000 Z74", *(f"G1 {p}" for p in points), "G1 X100 Y60", "M2", ""]
-    )
+    end, level = f"G1 X{place + 40 * size:g} Y{place}", 74 if size == 1 else 1
+    return "\n".join(["G21 G90 G64 P0.01", f"G1 F6000 Z{level}", *(f"G1 {p}" for p in points), end, "M2", ""])
 
 
 LATHE = """
@@ -159,21 +158,29 @@ class Program:
     text: str
     end: list[float]
     scales: list[float] = field(default_factory=lambda: [80, 80, 400])
+    changes: dict[str, str] = field(default_factory=dict)  # of the configuration
     machine: str = ""  # the text of its file, unless it is the example
     engine: str = "both"  # model and Verilated core, compared on each edge
 
 
-BOTH = 500  # lines on model and Verilated core
+# Without homing, near the place where it is, for a second of motion on the Verilated core
+BOTH = 200  # lines
+HOME_WHERE_IT_IS = {
+    **{f"HOME_{key} = {value}\n": "" for key, value in {"SEARCH_VEL": -50, "LATCH_VEL": -2}.items()},
+    **{"HOME_SEARCH_VEL = 20\n": "", "HOME_LATCH_VEL = 2\n": ""},
+    **{f"HOME = {value}\n": "HOME = 0\n" for value in (5, 75)},
+    "HOME_OFFSET = 80\n": "HOME_OFFSET = 0\n",
+}
 
 
 def programs(lines: int = 20_000) -> dict[str, Program]:
     """By the name of a part of `make hosts`."""
-    both = min(lines, BOTH)
+    few = short_lines(BOTH, place=10, size=0.2)
     return {
         "arcs": Program("homing on switches, circle and arcs at 6,000 mm/min", ARCS, [50, 50, 73]),
-        "g33": Program("three passes of G33", THREADS, [8, 2], [200, 200], LATHE),
+        "g33": Program("three passes of G33", THREADS, [8, 2], [200, 200], machine=LATHE),
         "lines": Program(f"{lines:,} short lines", short_lines(lines), [100, 60, 74], engine="model"),
-        "both": Program(f"{both:,} of them", short_lines(both), [100, 60, 74]),
+        "both": Program(f"{BOTH} short lines", few, [18, 10, 1], changes=HOME_WHERE_IT_IS),
     }
 
 
@@ -214,7 +221,7 @@ def fits(found: Threads) -> bool:
 
 def measure(program: Program) -> Figures:
     """Run it."""
-    found = run_linuxcnc(program.text, program.engine, text=program.machine, seconds=HOUR)
+    found = run_linuxcnc(program.text, program.engine, program.changes, program.machine, seconds=HOUR)
     done = found.homed and found.ended
     exact = done and bool(np.abs(np.array(found.positions) - program.end).max() < 1e-9)
     axes = range(len(program.scales))
