@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * A core at rest, for the compiler's profile: where little happens, most of its branches go as they always do.
+ * A core at rest, for the profile of the compiler: most of its branches go as they nearly always do.
  */
 #include "Vpasso_spi_top.h"
 #include "passo_pins.h"
