@@ -53,7 +53,7 @@ CASES = (
     Case("zigzag", 200, "`passo run`, 200 lines of 50 mm at 200 mm/s"),
     Case("paths", 20, "the tests' player, 20 paths of 200 lines"),
     Case("rtl", 4, "`passo run --engine rtl`, 4 lines of 50 mm at 200 mm/s"),
-    Case("campaign", 1500, "`passo campaign`, 1,500 moves on the model"),
+    Case("campaign", 4000, "`passo campaign`, 4,000 moves on the model"),
 )
 
 
