@@ -29,7 +29,7 @@ def verilated() -> Path:
     """The folder of the core that Verilator has made."""
     rtl_library(CORE)
     (folder,) = (paths.build / "lib").glob(f"verilated_{CORE.name}-*")
-    return folder
+    return Path(folder)
 
 
 def test_the_compiler_has_a_profile() -> None:
