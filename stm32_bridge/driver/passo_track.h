@@ -2,7 +2,7 @@
  * Trackers of a core that was built with them: a second hand on every axis, beside the path or without one.
  *
  * The steps of a tracker add to those of the path: the axis is at the sum. Positions of the driver are those
- * of the path alone. A stop of any cause, passo_zero() and passo_open() end all trackers; each goes on with
+ * of the path alone. A stop of any cause, passo_zero() and passo_open() end all trackers; each continues with
  * its next target. See docs/machine.md. Every call can also return NO_TRACKERS and the errors common to the
  * calls of passo.h.
  */
