@@ -7,7 +7,7 @@
 `default_nettype none
 
 module passo_machine #(
-  parameter TICK_LOG2 = 7
+  parameter TICK_LOG2 = 7  // clocks of a slew tick
 ) (
   input  wire        clk,
   input  wire        rst,
