@@ -40,7 +40,7 @@ setup: ## Install what the command and the tests of the model need; other target
 	@tools/setup.sh
 
 test: ## Lint the sources, then run all tests.
-	@tools/setup.sh dev yosys formal firmware browser web site release vhdl hdl path gcode fuzz cncjs
+	@tools/setup.sh dev yosys formal firmware browser web site release vhdl hdl path gcode fuzz cncjs linuxcnc
 	@$(MAKE) lint
 	@$(BIN)/pytest -n $$(($$(nproc) < 8 ? $$(nproc) + 1 : 8)) --dist worksteal # one more: some tests wait
 
@@ -103,10 +103,9 @@ path: ## Measure the path planner: time, limits at the pins, instructions on the
 	@tools/setup.sh dev firmware path
 	@$(BIN)/python -m benchmarks.path $(PATHS)
 
-hosts: ## Measure hosts on Linux, timed points and servo threads: late, with bit errors, dead, for an hour; and LinuxCNC (half an hour).
+hosts: ## Measure hosts on Linux and programs in LinuxCNC; writes docs/reference/hosts.md (an hour); HOURS=24, LINES=2000, ONLY=points.
 	@tools/setup.sh dev linuxcnc
-	@$(BIN)/python -m benchmarks.hosts
-	@$(BIN)/python -m benchmarks.servo
+	@$(BIN)/python -m benchmarks.hosts_all $(if $(HOURS),--hours $(HOURS)) $(if $(LINES),--lines $(LINES)) $(if $(ONLY),--only $(ONLY))
 
 gcode-peer: ## Compare random G-code programs with LinuxCNC's interpreter (minutes); PROGRAMS=, SEED=.
 	@tools/setup.sh gcode

@@ -14,6 +14,7 @@ from cocotb_tests.helpers.runner import (
     WITH_ENCODERS,
     WITH_INPUTS,
     WITH_OUTPUTS,
+    WITH_TRACKERS,
     run,
     skip_icarus,
 )
@@ -38,6 +39,7 @@ MODULES = {
     "core_inputs": WITH_INPUTS,  # limits, alarms, trigger, e-stop, watchdog
     "core_encoders": WITH_ENCODERS,  # following error, threading
     "core_outputs": WITH_OUTPUTS,  # outputs bound to the path
+    "core_trackers": WITH_TRACKERS,  # a second hand on every axis
     "core_machine": WITH_ALL,  # what they do to each other
 }
 

@@ -21,7 +21,7 @@ extern "C" {
 #endif
 
 #define PASSO_LINUX_SPEED_HZ 4000000u /* of SCLK, unless another one is given */
-#define PASSO_LINUX_PROBLEM_MAX 256u
+#define PASSO_LINUX_PROBLEM_MAX 256u  /* bytes of a sentence, with its zero */
 
 struct passo_linux_options {
 	const char *device;   /* "/dev/spidev0.0", or "unix:/tmp/passo": the socket of passo serve */

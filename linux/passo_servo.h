@@ -3,10 +3,13 @@
  *
  *     static struct passo_servo servo;
  *
- *     passo_servo_check(&servo, &passo, &options); // what is wrong with the options: servo.problem,
- * servo.axis while (passo_servo_start(&servo) == PASSO_ERROR_MOVING) // until the axes are at rest
- *             ...
- *     passo_servo_write(&servo, commands); // once in a period
+ *     // `problem` and `axis` of it say what is wrong with the options
+ *     passo_servo_check(&servo, &passo, &options);
+ *     // again while it returns MOVING
+ *     passo_servo_start(&servo);
+ *     // once in a period
+ *     passo_servo_write(&servo, commands);
+ *
  * Each period becomes a line of the core. The axes follow `lag` periods later, which is constant: the clocks
  * of program and core may differ, and a loop on the depth of the core's queue makes the lines longer or
  * shorter. The speed of the path is held for `buffer` to 2 `buffer` periods, after which the core decelerates
@@ -60,11 +63,11 @@ enum passo_servo_problem {
 	PASSO_SERVO_LAG           /* the queue of the core is shorter than the lag */
 };
 
+/* Private. */
 struct passo_servo_line {
 	int32_t steps[PASSO_AXES_MAX];
 	uint32_t output;
 };
-
 enum passo_servo_phase { PASSO_SERVO_OFF, PASSO_SERVO_FILLS, PASSO_SERVO_RUNS };
 
 struct passo_servo {

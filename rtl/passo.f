@@ -59,6 +59,9 @@ rtl/passo_spi.v
 rtl/passo_spi_top.v
 rtl/passo_tables.v
 rtl/passo_timescale.v
+rtl/passo_tracker.v
+rtl/passo_tracker_join.v
+rtl/passo_trackers.v
 rtl/passo_trigger.v
 rtl/passo_verdict.v
 rtl/passo_watchdog.v

@@ -26,6 +26,7 @@ module passo_axes #(
   input  wire [     3:0] bus_address,      // within the block
   input  wire [    31:0] bus_data,
   output wire [    31:0] read_data,
+  output wire [    15:0] bus_half,         // one clock late the upper half of bus_data, then the lower one
   // lines
   input  wire [AXES-1:0] step_request,
   input  wire [AXES-1:0] directions,
@@ -188,6 +189,7 @@ module passo_axes #(
     .timing_place     (write_place),
     .timing           (write_timing),
     .timing_is_minimal(write_is_minimal),
+    .half             (bus_half),
     .lost             (lost)
   );
 

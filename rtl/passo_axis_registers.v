@@ -13,27 +13,28 @@ module passo_axis_registers #(
   parameter AXES   = 4,
   parameter INPUTS = 0
 ) (
-  input  wire              clk,
-  input  wire              rst,
+  input wire clk,
+  input wire rst,
   // bus
-  input  wire              bus_write,
-  input  wire              bus_read,
-  input  wire [  AXES-1:0] select_axis,
-  input  wire              select_position,
-  input  wire [       2:0] bus_address,        // within the block
-  input  wire [      31:0] bus_data,
-  output reg  [       3:0] read_data,
-  output reg               answers_position,
+  input wire bus_write,
+  input wire bus_read,
+  input wire [AXES-1:0] select_axis,
+  input wire select_position,
+  input wire [2:0] bus_address,  // within the block
+  input wire [31:0] bus_data,
+  output reg [3:0] read_data,
+  output reg answers_position,
   // axes
-  output reg  [  AXES-1:0] write_pins,         // strobes, one clock after bus_write, with bus_data
-  output reg  [  AXES-1:0] write_step_timing,
-  output reg  [  AXES-1:0] write_dir_timing,
-  output reg  [  AXES-1:0] write_enable,
-  output reg  [  AXES-1:0] write_inputs,
-  output reg  [       1:0] timing_place,
-  output wire [      15:0] timing,             // 0 counts as 1
-  output wire              timing_is_minimal,  // it is 1
-  input  wire [AXES*4-1:0] lost
+  output reg [AXES-1:0] write_pins,  // strobes, one clock after bus_write, with bus_data
+  output reg [AXES-1:0] write_step_timing,
+  output reg [AXES-1:0] write_dir_timing,
+  output reg [AXES-1:0] write_enable,
+  output reg [AXES-1:0] write_inputs,
+  output reg [1:0] timing_place,
+  output wire [15:0] timing,  // 0 counts as 1
+  output wire timing_is_minimal,  // it is 1
+  output reg [15:0] half,  // of bus_data: the upper one after bus_write, then the lower one
+  input wire [AXES*4-1:0] lost
 );
 
   `include "passo_registers.vh"
@@ -61,7 +62,6 @@ module passo_axis_registers #(
   end
 
   // bus_data stands in the clock of bus_write and the one after
-  reg [15:0] half;
   assign timing_is_minimal = half[15:1] == 15'd0;
   assign timing            = {half[15:1], half[0] | timing_is_minimal};
 

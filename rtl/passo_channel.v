@@ -16,6 +16,7 @@ module passo_channel #(
   parameter            INPUTS          = 0,
   parameter            ENCODERS        = 0,
   parameter            OUTPUTS         = 0,
+  parameter            TRACKERS        = 0,
   parameter [AXES-1:0] STEP_RESET      = 0,
   parameter [AXES-1:0] DIR_RESET       = 0,
   parameter [AXES-1:0] ENABLE_RESET    = 0
@@ -110,6 +111,7 @@ module passo_channel #(
   wire [ 3:0] cause;
   wire        stopping;
   wire [14:0] drained;
+  wire        moves_path;
   wire        counting;
   wire        prepare;
   wire        begin_profile;
@@ -134,8 +136,17 @@ module passo_channel #(
   wire            line_endless;
   wire            line_ended;
   wire            line_underrun;
+  wire [AXES-1:0] path_steps;
+  wire [AXES-1:0] path_directions;
+
+  // trackers
+  wire            tracking;
   wire [AXES-1:0] step_request;
   wire [AXES-1:0] directions;
+  wire [    31:0] trackers_read_data;
+  /* verilator lint_off UNUSEDSIGNAL */
+  wire [    15:0] bus_half;
+  /* verilator lint_on UNUSEDSIGNAL */
 
   // axes
   wire            axes_quiet;
@@ -143,7 +154,7 @@ module passo_channel #(
   wire [AXES-1:0] lost_steps;
   wire [AXES-1:0] enable_wanted;
 
-  // for inputs, encoders and outputs only
+  // for inputs, encoders, outputs and trackers only
   /* verilator lint_off UNUSEDSIGNAL */
   wire [AXES-1:0] enable_off;
   wire [AXES-1:0] waits;
@@ -154,6 +165,7 @@ module passo_channel #(
   wire [AXES-1:0] index;
   wire            stall;
   wire            running_next;
+  wire [AXES-1:0] line_moves;
   wire            line_begins;
   wire            line_substep;
   wire [    25:0] output_word;
@@ -197,11 +209,13 @@ module passo_channel #(
   wire        ramp_incomplete;
 
   assign incomplete = line_incomplete | ramp_incomplete;
+  assign moving     = moves_path | tracking;
 
   // Unselected targets drive 0.
   assign bad_value = inputs_bad_value | outputs_bad_value;
   assign refusal = line_refusal | ramp_refusal | raster_refusal;
-  assign read_data = registers_read_data | axes_read_data | inputs_read_data | encoders_read_data | outputs_read_data;
+  assign read_data = registers_read_data | axes_read_data | inputs_read_data | encoders_read_data | outputs_read_data
+                     | trackers_read_data;
 
   reg  [2:0] occupied_q;  // a line loaded in the clock of a stop changes DIR up to 4 clocks later
   reg        at_rest;  // no motion, no step in flight to the axes, no change of the outputs that waits
@@ -209,7 +223,7 @@ module passo_channel #(
 
   always @(posedge clk) begin
     occupied_q <= {occupied_q[1:0], occupied};
-    at_rest    <= ~rst & ~occupied & (occupied_q == 3'b000) & axes_quiet & outputs_quiet;
+    at_rest    <= ~rst & ~occupied & (occupied_q == 3'b000) & axes_quiet & outputs_quiet & ~tracking;
   end
 
   passo_channel_registers #(
@@ -260,7 +274,7 @@ module passo_channel #(
     .run             (run),
     .wait_sync       (wait_sync),
     .sync_edge       (sync_edge),
-    .hold            (hold | wait_known),
+    .hold            (hold | wait_known | (stopping & tracking)),
     .command_stop    (command_stop),
     .command_abort   (command_abort),
     .command_clear   (command_clear),
@@ -272,12 +286,13 @@ module passo_channel #(
     .may_begin       (may_begin & ~wait_known),
     .following_soft  (following_soft),
     .following_hard  (following_hard),
+    .tracking        (tracking),
     .state           (state),
     .cause           (cause),
     .stopping        (stopping),
     .drained         (drained),
     .occupied        (occupied),
-    .moving          (moving),
+    .moving          (moves_path),
     .counting        (counting),
     .rate_is_zero    (rate == 17'd0),
     .ramp_valid      (ramp_valid),
@@ -321,7 +336,7 @@ module passo_channel #(
     .clk        (clk),
     .rst        (rst),
     .slew_tick  (slew_tick),
-    .moving     (moving),
+    .moving     (moves_path),
     .stopping   (stopping),
     .rate_target(rate_target),
     .rate_slew  (rate_slew),
@@ -373,7 +388,8 @@ module passo_channel #(
     .AXES          (AXES),
     .DEPTH_LOG2    (LINE_QUEUE_LOG2),
     .STEPS_REGISTER(STEPS_REGISTER),
-    .OUTPUTS       (OUTPUTS)
+    .OUTPUTS       (OUTPUTS),
+    .TRACKERS      (TRACKERS)
   ) u_lines (
     .clk         (clk),
     .rst         (rst),
@@ -396,8 +412,9 @@ module passo_channel #(
     .ended       (line_ended),
     .underrun    (line_underrun),
     .substep     (substep),
-    .step_request(step_request),
-    .directions  (directions),
+    .step_request(path_steps),
+    .directions  (path_directions),
+    .moves       (line_moves),
     .line_begins (line_begins),
     .line_substep(line_substep),
     .output_word (output_word)
@@ -420,6 +437,7 @@ module passo_channel #(
     .bus_address    (bus_address[3:0]),
     .bus_data       (bus_data),
     .read_data      (axes_read_data),
+    .bus_half       (bus_half),
     .step_request   (step_request),
     .directions     (directions),
     .drop           (drop),
@@ -479,7 +497,7 @@ module passo_channel #(
         .closed_high   (closed_high),
         .disable_axis  (disable_axis),
         .latch         (latch),
-        .may_close     (quiet | (occupied & ~moving)),
+        .may_close     (quiet | (occupied & ~moves_path & ~tracking)),
         .moving        (moving),
         .clear         (command_clear),
         .hard_stop     (input_hard),
@@ -553,6 +571,40 @@ module passo_channel #(
       assign follow_advance     = 1'b0;
       assign follow_waits       = 1'b0;
       assign index              = {AXES{1'b0}};
+    end
+  endgenerate
+
+  generate
+    if (TRACKERS != 0) begin : g_trackers
+      passo_trackers #(
+        .AXES(AXES)
+      ) u_trackers (
+        .clk         (clk),
+        .rst         (rst),
+        .bus_write   (bus_write),
+        .bus_read    (bus_read),
+        .select      (select),
+        .bus_address (bus_address),
+        .bus_bits    (bus_data[AXES-1:0]),
+        .bus_half    (bus_half),
+        .read_data   (trackers_read_data),
+        .halt        (drop | stopped),
+        .zero        (command_zero),
+        .brake       (stopping),
+        .hold        (hold | wait_known),
+        .busy        (tracking),
+        .path_steps  (path_steps),
+        .path_down   (path_directions),
+        .path_moves  (line_moves & {AXES{moves_path && rate != 17'd0}}),
+        .waits       (waits),
+        .step_request(step_request),
+        .directions  (directions)
+      );
+    end else begin : g_no_trackers
+      assign trackers_read_data = 32'd0;
+      assign tracking           = 1'b0;
+      assign step_request       = path_steps;
+      assign directions         = path_directions;
     end
   endgenerate
 

@@ -21,6 +21,7 @@ module passo_core #(
   parameter integer INPUTS = 0,  // 1: limits, home, alarm, probe, e-stop
   parameter integer ENCODERS = 0,  // 1: encoders
   parameter integer OUTPUTS = 0,  // 1: outputs bound to the path
+  parameter integer TRACKERS = 0,  // 1: a second hand on every axis
   parameter [31:0] CLOCK_HZ = 0,  // of clk, for the host to read; 0: not told
   parameter [31:0] BUILD = 0,  // identifies the bitstream, for the host to read
   // pin levels from configuration until the host writes polarities; bit channel * AXES + axis
@@ -88,6 +89,9 @@ module passo_core #(
     end
     if (OUTPUTS < 0 || OUTPUTS > 1) begin : g_bad_outputs
       passo_parameter_OUTPUTS_must_be_0_or_1 u_error ();
+    end
+    if (TRACKERS < 0 || TRACKERS > 1) begin : g_bad_trackers
+      passo_parameter_TRACKERS_must_be_0_or_1 u_error ();
     end
     if (RAMP_QUEUE_LOG2 < 2 || RAMP_QUEUE_LOG2 > 8) begin : g_bad_ramp_queue
       passo_parameter_RAMP_QUEUE_LOG2_must_be_2_to_8 u_error ();
@@ -217,7 +221,8 @@ module passo_core #(
     .AXES    (AXES),
     .INPUTS  (INPUTS),
     .ENCODERS(ENCODERS),
-    .OUTPUTS (OUTPUTS)
+    .OUTPUTS (OUTPUTS),
+    .TRACKERS(TRACKERS)
   ) u_rules (
     .clk        (clk),
     .rst        (rst),
@@ -243,6 +248,7 @@ module passo_core #(
     .INPUTS         (INPUTS),
     .ENCODERS       (ENCODERS),
     .OUTPUTS        (OUTPUTS),
+    .TRACKERS       (TRACKERS),
     .CLOCK_HZ       (CLOCK_HZ),
     .BUILD          (BUILD)
   ) u_registers (
@@ -333,6 +339,7 @@ module passo_core #(
         .INPUTS         (INPUTS),
         .ENCODERS       (ENCODERS),
         .OUTPUTS        (OUTPUTS),
+        .TRACKERS       (TRACKERS),
         .STEP_RESET     (STEP_RESET[channel*AXES+:AXES]),
         .DIR_RESET      (DIR_RESET[channel*AXES+:AXES]),
         .ENABLE_RESET   (ENABLE_RESET[channel*AXES+:AXES])

@@ -22,7 +22,8 @@ module passo_line_queue #(
   parameter AXES           = 4,
   parameter DEPTH_LOG2     = 8,
   parameter STEPS_REGISTER = 0,  // 1: block RAMs have an output register
-  parameter OUTPUTS        = 0   // 1: a line has an output word
+  parameter OUTPUTS        = 0,  // 1: a line has an output word
+  parameter TRACKERS       = 0   // 1: `moves` is wanted
 ) (
   input  wire                clk,
   input  wire                rst,
@@ -48,6 +49,7 @@ module passo_line_queue #(
   output wire [        29:0] last_substep,  // its M - 1
   output wire [    AXES-1:0] directions,
   output wire [ AXES*30-1:0] steps,         // its N_i
+  output wire [    AXES-1:0] moves,         // N_i is not 0; 0 without TRACKERS
   output wire [        25:0] output_word    // 0 without OUTPUTS
 );
 
@@ -195,19 +197,27 @@ module passo_line_queue #(
       assign output_word = 26'd0;
     end
     for (axis = 0; axis < AXES; axis = axis + 1) begin : g_axis
+      /* verilator lint_off UNUSEDSIGNAL */
+      wire [31:0] written = {bus_data[29:0] != 30'd0, write_directions[axis], bus_data[29:0]};
+      /* verilator lint_on UNUSEDSIGNAL */
+      wire [31:0] read;
       passo_memory #(
-        .WIDTH        (31),
+        .WIDTH        (31 + TRACKERS),
         .DEPTH_LOG2   (DEPTH_LOG2),
         .DATA_REGISTER(STEPS_REGISTER)
       ) u_steps (
         .clk          (clk),
         .write        (write & index[INDEX_STEPS+axis]),
         .write_address(write_line[DEPTH_LOG2-1:0]),
-        .write_data   ({write_directions[axis], bus_data[29:0]}),
+        .write_data   (written[30+TRACKERS:0]),
         .read_address (STEPS_REGISTER != 0 ? next_line[DEPTH_LOG2-1:0] : current_line),
         .load         (taken),
-        .read_data    ({directions[axis], steps[axis*30+:30]})
+        .read_data    (read[30+TRACKERS:0])
       );
+      if (TRACKERS == 0) begin : g_no_moves
+        assign read[31] = 1'b0;
+      end
+      assign {moves[axis], directions[axis], steps[axis*30+:30]} = read;
     end
   endgenerate
 

@@ -12,7 +12,8 @@ module passo_lines #(
   parameter AXES           = 4,
   parameter DEPTH_LOG2     = 8,
   parameter STEPS_REGISTER = 0,  // 1: block RAMs have an output register
-  parameter OUTPUTS        = 0   // 1: a line has an output word
+  parameter OUTPUTS        = 0,  // 1: a line has an output word
+  parameter TRACKERS       = 0   // 1: `moves` is wanted
 ) (
   input  wire                clk,
   input  wire                rst,
@@ -41,6 +42,7 @@ module passo_lines #(
   // axes
   output wire [    AXES-1:0] step_request,
   output wire [    AXES-1:0] directions,    // of the line whose steps are being made
+  output reg  [    AXES-1:0] moves,         // it has steps of the axis; 0 without TRACKERS
   // outputs
   output wire                line_begins,   // strobe: the next substep is the first of a line
   output wire                line_substep,  // a substep of a line
@@ -52,6 +54,7 @@ module passo_lines #(
   wire                      next_endless;
   reg                       no_repeat;
   wire        [   AXES-1:0] current_directions;
+  wire        [   AXES-1:0] current_moves;
   wire        [       29:0] last_substep;
   wire        [AXES*30-1:0] steps;
   wire                      add_n;
@@ -64,7 +67,8 @@ module passo_lines #(
     .AXES          (AXES),
     .DEPTH_LOG2    (DEPTH_LOG2),
     .STEPS_REGISTER(STEPS_REGISTER),
-    .OUTPUTS       (OUTPUTS)
+    .OUTPUTS       (OUTPUTS),
+    .TRACKERS      (TRACKERS)
   ) u_queue (
     .clk         (clk),
     .rst         (rst),
@@ -88,10 +92,15 @@ module passo_lines #(
     .last_substep(last_substep),
     .directions  (current_directions),
     .steps       (steps),
+    .moves       (current_moves),
     .output_word (output_word)
   );
 
-  always @(posedge clk) no_repeat <= ~rst & (end_endless | (no_repeat & ~take));
+  always @(posedge clk) begin
+    no_repeat <= ~rst & (end_endless | (no_repeat & ~take));
+    if (load_start_q) moves <= current_moves;
+    if (rst || TRACKERS == 0) moves <= {AXES{1'b0}};
+  end
 
   passo_line #(
     .AXES(AXES)

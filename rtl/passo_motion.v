@@ -40,6 +40,8 @@ module passo_motion (
   input  wire        may_begin,         // an ARMED motion need not wait for an index
   input  wire        following_soft,    // an axis is too far from its encoder: requests to stop
   input  wire        following_hard,
+  // trackers
+  input  wire        tracking,          // an axis moves, without a motion or beside it
   output wire [ 2:0] state,
   output reg  [ 3:0] cause,
   output reg         stopping,
@@ -119,12 +121,12 @@ module passo_motion (
   // Stop decision, registered
   reg stop_due;
   reg [3:0] cause_due;
-  wire       stop_wanted = abort | (moving & (step_overrun | line_underrun))
-                  | (stopping & (rate_was_zero | finished | ~moving));
+  wire       stop_wanted = abort | ((moving | tracking) & step_overrun) | (moving & line_underrun)
+                  | (stopping & (rate_was_zero | finished | ~moving) & ~tracking);
   wire [3:0] cause_wanted = stopping               ? soft_cause :
                          estop                   ? CAUSE_ESTOP :
                          command_abort           ? CAUSE_ABORT :
-                         moving & step_overrun   ? CAUSE_STEP_OVERRUN :
+                         (moving | tracking) & step_overrun ? CAUSE_STEP_OVERRUN :
                          input_hard              ? input_hard_cause :
                          too_far                 ? CAUSE_FOLLOWING_ERROR :
                          moving & line_underrun  ? CAUSE_LINE_UNDERRUN : soft_cause;

@@ -18,6 +18,7 @@ module passo_registers #(
   parameter        INPUTS          = 0,
   parameter        ENCODERS        = 0,
   parameter        OUTPUTS         = 0,
+  parameter        TRACKERS        = 0,
   parameter [31:0] CLOCK_HZ        = 0,
   parameter [31:0] BUILD           = 0
 ) (
@@ -51,7 +52,8 @@ module passo_registers #(
     RAMP_QUEUE_LOG2[4:0],
     3'd0,
     LINE_QUEUE_LOG2[4:0],
-    3'd0,
+    TRACKERS[0],
+    2'd0,
     TICK_LOG2[4:0],
     AXES[3:0],
     CHANNELS[3:0]

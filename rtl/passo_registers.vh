@@ -109,6 +109,8 @@ localparam PARAMETERS_AXES_LSB             = 4;
 localparam PARAMETERS_AXES_BITS            = 4;
 localparam PARAMETERS_TICK_LOG2_LSB        = 8;
 localparam PARAMETERS_TICK_LOG2_BITS       = 5;
+localparam PARAMETERS_TRACKERS_LSB         = 15;
+localparam PARAMETERS_TRACKERS_BITS        = 1;
 localparam PARAMETERS_LINE_QUEUE_LOG2_LSB  = 16;
 localparam PARAMETERS_LINE_QUEUE_LOG2_BITS = 5;
 localparam PARAMETERS_RAMP_QUEUE_LOG2_LSB  = 24;
@@ -578,6 +580,51 @@ localparam CHANNEL_FOLLOW_STATE_LOST_LSB     = 25;
 localparam CHANNEL_FOLLOW_STATE_LOST_BITS    = 1;
 localparam CHANNEL_FOLLOW_STATE_LOST_RESET   = 1'h0;
 
+// Channel: Tracker enable. One bit per axis. A stop of any cause and ZERO clear them; bits of axes that the
+// core lacks do nothing.
+localparam CHANNEL_TRACKER_ENABLE              = 8'h64;
+localparam CHANNEL_TRACKER_ENABLE_ENABLE_LSB   = 0;
+localparam CHANNEL_TRACKER_ENABLE_ENABLE_BITS  = 8;
+localparam CHANNEL_TRACKER_ENABLE_ENABLE_RESET = 8'h00;
+localparam CHANNEL_TRACKER_ENABLE_DEFINED      = 32'h000000FF;
+
+// Channel: Tracker state. One bit per axis.
+localparam CHANNEL_TRACKER_STATE                = 8'h65;
+localparam CHANNEL_TRACKER_STATE_ENABLED_LSB    = 0;
+localparam CHANNEL_TRACKER_STATE_ENABLED_BITS   = 8;
+localparam CHANNEL_TRACKER_STATE_ENABLED_RESET  = 8'h00;
+localparam CHANNEL_TRACKER_STATE_MOVES_LSB      = 8;
+localparam CHANNEL_TRACKER_STATE_MOVES_BITS     = 8;
+localparam CHANNEL_TRACKER_STATE_MOVES_RESET    = 8'h00;
+localparam CHANNEL_TRACKER_STATE_AT_TARGET_LSB  = 16;
+localparam CHANNEL_TRACKER_STATE_AT_TARGET_BITS = 8;
+
+// Channel: Tracker position. Steps of an axis that are due to its tracker, rounded down while it moves;
+// wraps. A hard stop may drop up to 7 of them.
+localparam CHANNEL_TRACKER_POSITION_BASE           = 8'h68;
+localparam CHANNEL_TRACKER_POSITION_COUNT          = 8;
+localparam CHANNEL_TRACKER_POSITION_POSITION_LSB   = 0;
+localparam CHANNEL_TRACKER_POSITION_POSITION_BITS  = 32;
+localparam CHANNEL_TRACKER_POSITION_POSITION_RESET = 32'h00000000;
+
+// Channel: Tracker target. Where the tracker of an axis goes: the first array while the last line that
+// moved the axis went up, or none did, the second one while it went down. Their difference is the backlash.
+localparam CHANNEL_TRACKER_TARGET_BASE         = 8'h70;
+localparam CHANNEL_TRACKER_TARGET_COUNT        = 8;
+localparam CHANNEL_TRACKER_TARGET_TARGET_LSB   = 0;
+localparam CHANNEL_TRACKER_TARGET_TARGET_BITS  = 32;
+localparam CHANNEL_TRACKER_TARGET_TARGET_RESET = 32'h00000000;
+localparam CHANNEL_TRACKER_TARGET_DEFINED      = 32'hFFFFFFFF;
+
+// Channel: Tracker target. Where the tracker of an axis goes: the first array while the last line that
+// moved the axis went up, or none did, the second one while it went down. Their difference is the backlash.
+localparam CHANNEL_TRACKER_TARGET_DOWN_BASE         = 8'h78;
+localparam CHANNEL_TRACKER_TARGET_DOWN_COUNT        = 8;
+localparam CHANNEL_TRACKER_TARGET_DOWN_TARGET_LSB   = 0;
+localparam CHANNEL_TRACKER_TARGET_DOWN_TARGET_BITS  = 32;
+localparam CHANNEL_TRACKER_TARGET_DOWN_TARGET_RESET = 32'h00000000;
+localparam CHANNEL_TRACKER_TARGET_DOWN_DEFINED      = 32'hFFFFFFFF;
+
 // Channel: where each axis has its registers.
 localparam CHANNEL_AXIS_BASE   = 8'h80;
 localparam CHANNEL_AXIS_COUNT  = 8;
@@ -662,6 +709,20 @@ localparam AXIS_INPUTS_ALARM_DISABLES_LSB        = 6;
 localparam AXIS_INPUTS_ALARM_DISABLES_BITS       = 1;
 localparam AXIS_INPUTS_ALARM_DISABLES_RESET      = 1'h0;
 localparam AXIS_INPUTS_DEFINED                   = 32'h0000007F;
+
+// Axis: Speed of the tracker. The tracker moves no faster. Below its acceleration it does not move.
+localparam AXIS_TRACKER_SPEED             = 3'h6;
+localparam AXIS_TRACKER_SPEED_SPEED_LSB   = 0;
+localparam AXIS_TRACKER_SPEED_SPEED_BITS  = 32;
+localparam AXIS_TRACKER_SPEED_SPEED_RESET = 32'h00000000;
+localparam AXIS_TRACKER_SPEED_DEFINED     = 32'hFFFFFFFF;
+
+// Axis: Acceleration of the tracker. Greatest change of its speed from one tick to the next.
+localparam AXIS_TRACKER_ACCELERATION                    = 3'h7;
+localparam AXIS_TRACKER_ACCELERATION_ACCELERATION_LSB   = 0;
+localparam AXIS_TRACKER_ACCELERATION_ACCELERATION_BITS  = 32;
+localparam AXIS_TRACKER_ACCELERATION_ACCELERATION_RESET = 32'h00000000;
+localparam AXIS_TRACKER_ACCELERATION_DEFINED            = 32'hFFFFFFFF;
 
 // Encoder: Encoder setup. How the encoder counts, and what a following error does.
 localparam ENCODER_SETUP                      = 3'h0;

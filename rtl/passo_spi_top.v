@@ -16,6 +16,7 @@ module passo_spi_top #(
   parameter integer INPUTS = 0,  // 1: limits, home, alarm, probe, e-stop
   parameter integer ENCODERS = 0,  // 1: encoders
   parameter integer OUTPUTS = 0,  // 1: outputs bound to the path
+  parameter integer TRACKERS = 0,  // 1: a second hand on every axis
   parameter [31:0] CLOCK_HZ = 0,  // of clk, for the host to read; 0: not told
   parameter [31:0] BUILD = 0,  // identifies the bitstream, for the host to read
   // pin levels from configuration until the host writes polarities; bit channel * AXES + axis
@@ -90,6 +91,7 @@ module passo_spi_top #(
     .INPUTS         (INPUTS),
     .ENCODERS       (ENCODERS),
     .OUTPUTS        (OUTPUTS),
+    .TRACKERS       (TRACKERS),
     .CLOCK_HZ       (CLOCK_HZ),
     .BUILD          (BUILD),
     .STEP_RESET     (STEP_RESET),

@@ -28,6 +28,7 @@ PARAMETERS = {
     "INPUTS": "1: limits, home, alarm, probe, e-stop",
     "ENCODERS": "1: encoders",
     "OUTPUTS": "1: outputs bound to the path",
+    "TRACKERS": "1: a second hand on every axis",
     "CLOCK_HZ": "Clock in Hz, for the host to read; 0: not told",
     "BUILD": "Identifier of the bitstream, for the host to read",
     "STEP_RESET": "Polarity of each STEP from configuration on",

@@ -16,6 +16,7 @@ ROOT = Path(__file__).resolve().parent.parent
 
 OUTPUTS: dict[str, Callable[[Source], str]] = {
     "c_model/core/passo_pins.h": c.header,
+    "sim/engine/passo_engine.v": verilog.engine,
     "sim/passo/pins.py": python.module,
     "cocotb_tests/probes/passo_spi_top.vh": verilog.probe,
     "verify/soak/player_pins.vh": verilog.player,

@@ -25,6 +25,7 @@ module passo_board #(
   parameter            OUTPUT_PINS      = 8,             // of the core's 8 outputs
   parameter [AXES-1:0] LOW_AT_HOME      = {AXES{1'b0}},  // axes whose limit is at the pin of their home
   parameter [AXES-1:0] HIGH_AT_HOME     = {AXES{1'b0}},
+  parameter [AXES-1:0] ENCODER_WIRED    = {AXES{1'b1}},  // axes with an encoder, the only ones with cells
   parameter [AXES-1:0] STEP_RESET       = {AXES{1'b0}},
   parameter [AXES-1:0] DIR_RESET        = {AXES{1'b0}},
   parameter [AXES-1:0] ENABLE_RESET     = {AXES{1'b1}}
@@ -116,6 +117,11 @@ module passo_board #(
   wire [AXES-1:0] core_low = limit_low & ~LOW_AT_HOME | home & LOW_AT_HOME;
   wire [AXES-1:0] core_high = limit_high & ~HIGH_AT_HOME | home & HIGH_AT_HOME;
 
+  // An encoder that is not fitted never counts.
+  wire [AXES-1:0] core_a = encoder_a & ENCODER_WIRED;
+  wire [AXES-1:0] core_b = encoder_b & ENCODER_WIRED;
+  wire [AXES-1:0] core_index = encoder_index & ENCODER_WIRED;
+
   passo_spi_top #(
     .CHANNELS      (1),
     .AXES          (AXES),
@@ -143,9 +149,9 @@ module passo_board #(
     .alarm          (alarm),
     .probe          (probe),
     .estop_n        (estop_n),
-    .encoder_a      (encoder_a),
-    .encoder_b      (encoder_b),
-    .encoder_index  (encoder_index),
+    .encoder_a      (core_a),
+    .encoder_b      (core_b),
+    .encoder_index  (core_index),
     .step           (step),
     .dir            (dir),
     .enable         (enable),

@@ -334,6 +334,27 @@ def test_a_pin_that_home_and_limit_share(tmp_path: Path, low: int, high: int) ->
     assert board("tangnano9k").limits_at_home(low, high) == {}
 
 
+ENCODERS = f"""{CELLS_OF_A_BENCH.replace("power_up.locked", "1'b1")}
+module encoders;
+  reg [2:0] pins = 3'd0;
+  passo_board #(.AXES(3), .ENCODERS(1) PARAMETERS) u_board (
+    .oscillator(1'b0), .encoder_a(pins), .encoder_b(~pins), .encoder_index(pins));
+  initial repeat (8) begin
+    #1 $display("%b %b %b", u_board.u_core.encoder_a, u_board.u_core.encoder_b, u_board.u_core.encoder_index);
+    pins = pins + 3'd1;
+  end
+endmodule
+"""
+
+
+@pytest.mark.parametrize("there", [7, 4, 1])
+def test_an_encoder_that_is_not_there_stands_still(tmp_path: Path, there: int) -> None:
+    """Whatever its pins do: it needs no wire."""
+    said = simulated(tmp_path, "encoders", ENCODERS, f", .ENCODER_WIRED({there})")
+    levels = [f"{pins & there:03b} {~pins & there:03b} {pins & there:03b}" for pins in range(8)]
+    assert said.splitlines() == levels
+
+
 @each_board
 def test_board_is_on_the_pages(board: Board) -> None:
     """docs/fpga.md leads to its table, README.md has its name."""

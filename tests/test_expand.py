@@ -14,6 +14,8 @@ from passo.expand.expander import Options, expand_file, needs_expanding
 from passo.expand.place import ExpandError
 from passo.expand.tools import Tool
 from passo.gcode import Gcode, GcodeError, GcodeSettings, lines
+from passo.machine_file import read_machine
+from passo.part import read_part
 from passo.toolchain import paths
 
 from benchmarks.gcode_corpus import corpus
@@ -296,3 +298,32 @@ def test_nothing_breaks_it(tmp_path: Path) -> None:
             list(gcode.actions())
         taken += 1
     assert taken > 40
+
+
+AXES_OF_A_MACHINE = "".join(
+    f'[[axis]]\nname = "{letter}"\nsteps_per_mm = 80\nspeed = 20\nacceleration = 100\n' for letter in "XYZ"
+)
+
+
+def test_a_program_begins_where_the_one_before_it_ends(tmp_path: Path) -> None:
+    """Position, offsets, tool, G92 and diameters are those behind it, as `passo run a.nc b.ngc` plays."""
+    path = tmp_path / "machine.toml"
+    path.write_text("clock_hz = 8_000_000\n" + AXES_OF_A_MACHINE)
+    machine = read_machine(path)
+
+    def played(first: str, second: str) -> list[str]:
+        files = [tmp_path / "a.nc", tmp_path / "b.ngc"]
+        for file, text in zip(files, (first, second), strict=True):
+            file.write_text(text)
+        part = read_part(files, machine, {2: Tool(2, 0, 3.5)})
+        return [
+            line.decode().strip()
+            for line, at in zip(part.lines, part.places, strict=True)
+            if at.path == files[1]
+        ]
+
+    assert played("G0 X10 Y5\nM2\n", "G0 X[#5420+1] Z#5421") == ["G0 X11 Z5"]
+    assert played("G10 L2 P1 X2\nG92 Y7\nT2 M6\nG43\n", "G0 X#5221 Y[#5210+#5400]") == ["G0 X2 Y3"]
+    assert played("G0 X10 Y5\n", "F9 G41.1 D2 G1 X30\nG1 X40\nG40 G1 X50")[-1] == "G1 X50 Y5"
+    assert played("G7 G0 X10\n", "G0 X[2*4]\nG8\nX[1+2]") == ["G8", "G0 X4", "X3"]
+    assert played("G20 G91\n", "X[1/4]") == ["X0.25"]

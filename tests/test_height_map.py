@@ -2,82 +2,33 @@
 """`passo heightmap`: the depth of cut on bowed and twisted plates, by closed form."""
 
 import math
-from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 from passo.cli import main
-from passo.expand.expander import Options, expand_file
-from passo.expand.follow import follow
-from passo.expand.height_map import ERROR, HeightMap, read_height_map
+from passo.expand.height_map import HeightMap, read_height_map
 from passo.failure import BadInputError
 from passo.gcode import NANOMETERS, Gcode, GcodeSettings
 from passo.native import planner
 
-RAPID = (1 << 64) - 1
-DEPTH = 0.2
-FINE = Options(GcodeSettings(axes=3, arc_tolerance=0.0001))
-PLATES: dict[str, tuple[Callable[[float, float], float], float]] = {
-    "bowed by 0.5 mm": (lambda x, y: 0.5 * (1 - ((x / 50 - 1) ** 2 + (y / 40 - 1) ** 2) / 2), 0.01),
-    "twisted": (lambda x, y: (x - 30) * (y - 50) / 5000, ERROR + 0.0002),
-    "tilted": (lambda x, y: x / 100 - y / 50, ERROR + 0.0002),
-}
-PROGRAM = """G21 G90
-G0 Z5
-G0 X5 Y5
-G1 Z-.2 F300 (down)
-X95 Y75
-X20
-G3 X20 Y75 I12 J-15
-G3 X80 Y60 R42
-G91 G1 X-50 Y-40
-G3 X10 Y10 R8
-G90 G20 G1 X1 Y2
-G93 X3 F2
-G94 G21 F100 M3 S100 X90 (on)
-G17 G0 Z5
-X0 Y0
-M2
-"""
-
-
-def plate(surface: Callable[[float, float], float], step: float = 10) -> HeightMap:
-    """100 by 80 mm, probed exactly."""
-    x, y = (tuple(k * step for k in range(round(size / step) + 1)) for size in (100, 80))
-    return HeightMap(x, y, tuple(tuple(surface(a, b) for a in x) for b in y))
-
-
-def followed(folder: Path, text: str, height_map: HeightMap, options: Options = FINE) -> list[str]:
-    """The lines of a text that follow a map."""
-    path = folder / "part.ngc"
-    path.write_text(text)
-    return [line.text for line in follow(expand_file(path, options), height_map, options)]
-
-
-def places(lines: list[str]) -> Iterator[tuple[bool, float, float, float]]:
-    """Points along all motions, on the way at the feed or at rapid, in mm."""
-    gcode, at = Gcode(FINE.gcode), (0.0, 0.0, 0.0)
-    for line in lines:
-        gcode.execute(line)
-        for action in gcode.actions():
-            if action.kind == planner().PASSO_GCODE_LINE:
-                end = tuple(n / NANOMETERS for n in action.target[0:3])
-                for k in range(1, 21):
-                    yield action.feed != RAPID, *(a + (b - a) * k / 20 for a, b in zip(at, end, strict=True))
-                at = end
+from benchmarks import height_map as benchmark
+from benchmarks.height_map import PLATES, cut, followed, places, plate
 
 
 @pytest.mark.parametrize("name", PLATES)
 def test_depth_of_cut(tmp_path: Path, name: str) -> None:
     """Lines and arcs in all modes are as deep in the plate as programmed."""
-    surface, bound = PLATES[name]
-    lines = followed(tmp_path, PROGRAM, plate(surface))
-    cut = [(x, y, z) for at_feed, x, y, z in places(lines) if at_feed]
-    down = next(index for index, (_, _, z) in enumerate(cut) if z < surface(5, 5) - DEPTH + bound)
-    worst = max(abs(z - surface(x, y) + DEPTH) for x, y, z in cut[down:])
-    print(f"{name}: {worst:.5f} mm, {len(lines)} lines of {len(PROGRAM.splitlines())}")
-    assert worst < bound
-    assert len(cut) > 2000 and len(lines) < 200
+    made = cut(tmp_path, name)
+    assert made.worst < PLATES[name][1]
+    assert made.points > 2000 and made.lines < 200
+
+
+def test_a_coarse_map_is_seen(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    """The command prints the figures; probed every 20 mm the bowed plate is cut too deep."""
+    assert benchmark.main() == 0
+    assert capsys.readouterr().out.count("depth of cut within") == len(PLATES)
+    monkeypatch.setattr(benchmark, "cut", lambda folder, name: cut(folder, name, 20))
+    assert benchmark.main() == 1
 
 
 def test_way_in_the_plane(tmp_path: Path) -> None:

@@ -12,7 +12,9 @@ import numpy as np
 import passo
 import pytest
 from passo import Machine
+from passo.build import Parameters
 from passo.driver import DriverError
+from passo.engine import model_engine
 from passo.failure import BadInputError, Failure
 from passo.grbl_setup import machine_at
 from passo.host_core import OpenError
@@ -179,6 +181,19 @@ def test_what_is_refused(plain: Path) -> None:
         Machine.from_file(plain, on="unix:/no/socket")
     with pytest.raises(AttributeError):
         passo.nothing  # noqa: B018
+
+
+def test_a_core_without_inputs(tmp_path: Path) -> None:
+    """A machine with switches is refused, one without them is not."""
+    path, core = tmp_path / "machine.toml", Parameters(axes=3, clock_hz=16_000_000)
+    with model_engine(core, 16_000_000) as engine, serving(engine, tmp_path / "core") as server:
+        path.write_text(HOMES)
+        sentence = "its switches need inputs, the core has none: build it with INPUTS=1"
+        with pytest.raises(BadInputError, match=sentence):
+            Machine.from_file(path, f"unix:{server.path}")
+        path.write_text(PLAIN)
+        with Machine.from_file(path, f"unix:{server.path}") as machine:
+            assert machine.steps().tolist() == [0, 0, 0]
 
 
 def test_other_tasks_go_on(plain: Path) -> None:

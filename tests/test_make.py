@@ -233,12 +233,13 @@ def test_the_encoder_of_a_spindle(tmp_path: Path) -> None:
     assert rows["encoder_index[3]"] == ["C6", "J1 26", "encoder of the spindle: index"]
     assert {rows[f"{name}[3]"][-1] for name in ("step", "dir", "enable")} == {"not connected"}
     assert {rows[f"{name}[3]"][-1] for name in ("home", "limit_low", "alarm")} == {"ground"}
-    assert rows["encoder_a[0]"][-1] == "ground" and rows["step[2]"][-1].startswith("drive Z")
+    assert rows["encoder_a[0]"][-1] == "not connected" and rows["step[2]"][-1].startswith("drive Z")
     assert any("AM26LV32" in line for line in results["wiring.html"])
     assert not any("AM26LV32" in line for line in made(ROUTER, tmp_path / "router")["wiring.html"])
     machine = read_machine(path)
     assert make_command.core_of(machine) == (4, 96.0, ("inputs", "encoders", "outputs"))
     assert make_command.definitions(machine)["TURN_COUNTS"] == 4000
+    assert make_command.wired(machine, board("hx8k")) == {"ENCODER_WIRED": 1 << 3}
     assert (core_for(machine).axes, core_for(machine).encoders) == (4, 1)
 
 

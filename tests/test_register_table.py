@@ -17,7 +17,7 @@ from passo.register_table import Register
 from passo.registers import State, Verdict
 
 WORDS = 1 << r.HEADER_ADDRESS_BITS
-PARTS = {"inputs": 1, "encoders": 1, "outputs": 1}
+PARTS = {"inputs": 1, "encoders": 1, "outputs": 1, "trackers": 1}
 # Each part alone, as other tests have compiled it; what is there once per channel, in the core of two.
 CORES = [
     Parameters(),
@@ -41,6 +41,7 @@ NOT_0 = {
 QUIET = {
     *("AXIS_PINS", "AXIS_INPUTS", "CHANNEL_FOLLOW", "CHANNEL_OUTPUT_LEVELS", "CHANNEL_OUTPUT_LAG"),
     *("CHANNEL_COMPARE_PULSE", "CHANNEL_COMPARE_DISTANCE", "COSINE", "SIGMOID", "EASE"),
+    "AXIS_TRACKER_ACCELERATION",
 }
 QUIET_COMMANDS = 1 << r.CHANNEL_COMMAND_CLEAR_LSB, 1 << r.CHANNEL_COMMAND_ZERO_LSB
 
@@ -50,9 +51,9 @@ PLACES = {
     "CORE": {(0x10, 0x1F): "inputs", (0x20, 0x2F): "encoders", (0x30, 0x3F): "outputs"},
     "CHANNEL": {
         **{(0x10, 0x1F): "inputs", (0x22, 0x22): "outputs", (0x30, 0x3F): "outputs"},
-        **{(0x48, 0x4F): "inputs", (0x50, 0x7F): "encoders"},
+        **{(0x48, 0x4F): "inputs", (0x50, 0x63): "encoders", (0x64, 0x7F): "trackers"},
     },
-    "AXIS": {(5, 5): "inputs"},
+    "AXIS": {(5, 5): "inputs", (6, 7): "trackers"},
     "ENCODER": {(0, 7): "encoders"},
 }
 
@@ -283,5 +284,7 @@ def test_every_register_of_the_rtl_answers_as_in_the_model(parameters: Parameter
 def test_arrays_of_a_channel_have_a_word_for_each_axis() -> None:
     """This is how their number is known here."""
     arrays = [register.name for register in r.TABLE if register.block == "CHANNEL" and register.count > 1]
-    assert arrays == ["CHANNEL_POSITION", "CHANNEL_TRIGGER_POSITION", "CHANNEL_ENCODER_POSITION"]
+    names = "POSITION", "TRIGGER_POSITION", "ENCODER_POSITION"
+    trackers = "TRACKER_POSITION", "TRACKER_TARGET", "TRACKER_TARGET_DOWN"
+    assert arrays == [f"CHANNEL_{name}" for name in (*names, *trackers)]
     assert all(register.count == 1 for register in r.TABLE if register.block in ("AXIS", "ENCODER"))

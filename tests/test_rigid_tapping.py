@@ -13,6 +13,7 @@ from passo.part_judge import shares_of
 from passo.spindle_at import SpindleAt
 
 from benchmarks.rigid_tapping import (
+    APPROACH,
     COUNTS,
     DEPTH,
     MACHINE,
@@ -34,6 +35,7 @@ def test_two_holes_are_in_phase() -> None:
     assert len(passes) == 2 and played.problems() == []
     for one in passes:
         assert one.error <= WITHIN and one.end == one.late == 0 and one.deepest > DEPTH
+        assert 0.5 < one.settled <= APPROACH and one.off > 10  # it comes up to speed and to rest
     counts = 32_000_000 * 60 * 3 // (600 * COUNTS)
     late = replace(played, clocks=[clocks + counts for clocks in played.clocks])
     assert all(one.error > 2 for one in judge(late))

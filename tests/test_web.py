@@ -378,7 +378,7 @@ def test_all_bad_lines_are_said_as_the_command_says_them(
     wanted = (
         str(refused.value)
         .replace(f"{path}:", "line ")
-        .replace("fitted: --surface", "fitted: passo run --surface")
+        .replace("--surface MAP.csv simulates one", "a height map simulates one")
     )
     first, *_ = verdict_of(browser, path.read_text()).split(" (")
     assert wanted.startswith(first.removeprefix("error: ")) and len(wanted.splitlines()) > 10

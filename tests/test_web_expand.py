@@ -79,7 +79,8 @@ def of_the_page(
     browser.value(
         f"(window.found = null, (async () => {{ await web.runner.python(); const all = [];"
         f"for (const text of {json.dumps(programs)}) all.push(await web.runner.ask("
-        f"{{kind: 'expand', text, machine: {json.dumps(machine)}, tools: {json.dumps(tools)}}}));"
+        f"{{kind: 'expand', name: 'program', files: [{{name: 'program', text, plays: true}}],"
+        f" machine: {json.dumps(machine)}, tools: {json.dumps(tools)}}}));"
         "found = all; })().catch(error => { found = `${error}`; }), 1)"
     )
     browser.wait("found", PATIENCE)
@@ -98,7 +99,7 @@ def of_the_command(folder: Path, program: str, options: Options) -> dict[str, An
     except ExpandError as error:
         wrong = f"line {error.place.line}: {error.reason}".replace(f"{folder}/", "")
         return {"kind": "expanded", "said": said, "wrong": wrong}
-    places = [line.place.line for line in lines]
+    places = [f"line {line.place.line}" for line in lines]
     return {"kind": "expanded", "said": said, "lines": [line.text for line in lines], "places": places}
 
 
@@ -165,8 +166,7 @@ def test_places_of_plain_lines(browser: Browser) -> None:
     text = "o1 repeat [2]\nG91 G38.2 Z-1 F9\no1 endrepeat\nG0 X0"
     assert verdict_of(browser, text).startswith("error: line 2: no probe is fitted")
     assert (
-        browser.value(ANSWER).splitlines()
-        == ["line 2: no probe is fitted: passo run --surface MAP.csv simulates one"] * 2
+        browser.value(ANSWER).splitlines() == ["line 2: no probe is fitted: a height map simulates one"] * 2
     )
 
 
@@ -181,16 +181,6 @@ def test_tools(browser: Browser, page: Path) -> None:
     browser.open("about:blank")
     browser.open(page.as_uri() + link, READY)
     assert browser.value(VERDICT) == "done"
-
-
-def test_a_thread_is_refused(browser: Browser) -> None:
-    """The page has no spindle that turns."""
-    machine = (paths.examples / "gcode" / "lathe.toml").read_text()
-    before = browser.value("document.getElementById('machine-text').value")
-    browser.value(f"(web.putMachine({json.dumps(machine)}), 1)")
-    said = verdict_of(browser, "M3 S500\nG33 Z[-1] K1")
-    browser.value(f"(web.putMachine({json.dumps(before)}), 1)")
-    assert said.startswith("error: line 2: ") and said.endswith("G33 (this page turns no spindle): passo run")
 
 
 def test_an_endless_program_is_canceled(either: Browser | Firefox) -> None:

@@ -40,6 +40,7 @@ ENDS = {
     "INPUTS": (0, 1),
     "ENCODERS": (0, 1),
     "OUTPUTS": (0, 1),
+    "TRACKERS": (0, 1),
 }
 LEVELS = ("STEP_RESET", "DIR_RESET", "ENABLE_RESET")  # a bit for each axis, default 0
 TOLD = ("CLOCK_HZ", "BUILD")  # a word, default 0

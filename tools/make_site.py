@@ -19,6 +19,8 @@ from subprocess import PIPE, STDOUT
 
 from passo.toolchain import paths, short
 
+from tools.c_api import Interface
+
 PAGES = paths.results / "site" / "pages"
 HTML = paths.results / "site" / "html"
 CONFIGURATION = paths.tools / "mkdocs.yml"
@@ -26,8 +28,13 @@ TOP = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "LICENSE")
 LINK = re.compile(r"(\]\()([^)#\s]+)")
 LANGUAGES = {".v": "verilog", ".vhd": "vhdl", ".py": "python", ".c": "c", ".h": "c", ".cpp": "cpp"}
 LANGUAGES |= {".toml": "toml", ".core": "yaml"}
-HEADERS = (paths.driver / "passo.h", *sorted(paths.planner.glob("passo_*.h")))
 WEB = "web/index.html"
+FOR_PROGRAMS = {
+    "Machine: plan, run, home": "host_machine",
+    "motions and their results": "motion",
+    "speeds and limits of a plan": "course",
+    "errors": "failure",
+}
 
 
 def source_page(source: Path) -> str:
@@ -48,9 +55,10 @@ def place(file: Path) -> Path:
     return name if file.suffix in (".md", ".png") else name.with_name(f"{name.name}.md")
 
 
-def stage(file: Path) -> list[Path]:
-    """Write the page of a file of the repository; return the files that it links to."""
+def relinked(file: Path, text: str) -> tuple[str, list[Path]]:
+    """The text of a page with links to pages in place of those to files, and the files that it links to."""
     linked: list[Path] = []
+    base = file if file.is_dir() else file.parent
 
     def to_page(found: re.Match[str]) -> str:
         target = (base / found[2]).resolve()
@@ -59,15 +67,23 @@ def stage(file: Path) -> list[Path]:
         linked.append(target)
         return found[1] + os.path.relpath(place(target), place(file).parent)
 
+    return LINK.sub(to_page, text), linked
+
+
+def stage(file: Path) -> list[Path]:
+    """Write the page of a file of the repository; return the files that it links to."""
     made = PAGES / place(file)
     made.parent.mkdir(parents=True, exist_ok=True)
     if file.suffix == ".png":
         shutil.copyfile(file, made)
         return []
-    base = file if file.is_dir() else file.parent
-    is_page = file.suffix == ".md" or file.is_dir()
+    if file.suffix == ".ipynb":  # made by stage_notebooks()
+        return relinked(file, file.read_text(encoding="utf-8"))[1]
     text = file.read_text(encoding="utf-8") if file.suffix == ".md" else source_page(file)
-    made.write_text(LINK.sub(to_page, text) if is_page else text, encoding="utf-8")
+    linked: list[Path] = []
+    if file.suffix == ".md" or file.is_dir():
+        text, linked = relinked(file, text)
+    made.write_text(text, encoding="utf-8")
     return linked
 
 
@@ -83,20 +99,39 @@ def stage_all() -> None:
 
 
 def stage_api() -> None:
-    """The Python package, a page for each module, and the headers of driver and planner."""
+    """The Python package, a page for each module, and the headers of the C interface (tools/c_api.py)."""
     folder = PAGES / "api"
     folder.mkdir(parents=True)
-    index = ["# API", "", "## C: driver and planner", ""]
-    for header in HEADERS:
+    index = ["# API", "", "## C: driver, planner, Linux", ""]
+    interface = Interface(PAGES.parent / "headers")
+    for header in interface.files:
         stage(header)
-        index.append(f"* [{header.name}](../{place(header)})")
-    index += ["", "## Python: `passo`", ""]
+        made = folder / "c" / f"{header.name}.md"
+        made.parent.mkdir(exist_ok=True)
+        text = interface.page(header, f"../../{place(header).as_posix()}", "../..")
+        made.write_text(text, encoding="utf-8")
+        index.append(f"* [{header.name}](c/{made.name})")
+    index += ["", "## Python: for programs", ""]
+    index += [f"* [{name}](passo.{module}.md)" for name, module in FOR_PROGRAMS.items()]
+    index += ["", "## Python: all modules", ""]
     package = paths.sim / "passo"
     for module in sorted(set(package.rglob("*.py")) - set((package / "page").iterdir())):
         name = ".".join(module.relative_to(package.parent).with_suffix("").parts).removesuffix(".__init__")
         (folder / f"{name}.md").write_text(f"# {name}\n\n::: {name}\n", encoding="utf-8")
         index.append(f"* [{name}]({name}.md)")
     (folder / "index.md").write_text("\n".join((*index, "")), encoding="utf-8")
+
+
+def stage_notebooks() -> None:
+    """The notebooks, executed, in the place of their source."""
+    from tools.notebook import NOTEBOOKS, executed, page
+
+    for notebook in NOTEBOOKS:
+        made = PAGES / place(notebook)
+        text, pictures = page(executed(notebook))
+        for name, data in pictures.items():
+            (made.parent / name).write_bytes(data)
+        made.write_text(relinked(notebook, text)[0], encoding="utf-8")
 
 
 def stage_web() -> None:
@@ -141,6 +176,7 @@ def main() -> int:
     shutil.rmtree(PAGES.parent, ignore_errors=True)
     stage_all()
     stage_api()
+    stage_notebooks()
     if not options.no_web:
         stage_web()
     status = build_html()

@@ -5,7 +5,7 @@
 # A SET is an optional set of Python packages in requirements-SET.txt (dev, yosys, ...); or `firmware`:
 # Debian's compiler for the STM32; or `browser`: Debian's headless Chromium and Firefox, and axe, where npm is; or
 # `vhdl`: Debian's GHDL; or `gcode`: rs274, the interpreter of Debian's LinuxCNC; or `linuxcnc`: all of it (120 packages); or `fuzz`: Debian's clang with
-# libFuzzer; or `cncjs`: the controller of that sender, where npm is. The set `web` has Pyodide as well, where npm is.
+# libFuzzer; or `cncjs`: the controller of that sender, where npm is. The set `web` has Pyodide as well, where npm is, and `site` Debian's Doxygen.
 # Safe to run again at any time: it installs only what is missing.
 # PYTHON selects the interpreter for the environment (default: python3).
 
@@ -62,6 +62,7 @@ for name in "$@"; do
     else
         python_sets+=("$name")
         [ "$name" != web ] || npm_sets+=(pyodide)
+        [ "$name" != site ] || tools+=" doxygen:doxygen"
     fi
 done
 

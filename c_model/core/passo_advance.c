@@ -157,8 +157,8 @@ static uint64_t clock_bus(
 	const uint16_t address = core->link.bus.address;
 	struct passo_inputs pins = *inputs;
 
-	if (parameters->inputs + parameters->encoders + parameters->outputs != 0u || !spares_channels(core)
-	    || rest_quiet(core, inputs, parameters->channels, 1) == 0u)
+	if (parameters->inputs + parameters->encoders + parameters->outputs + parameters->trackers != 0u
+	    || !spares_channels(core) || rest_quiet(core, inputs, parameters->channels, 1) == 0u)
 		return 0;
 	if (shift) {
 		passo_shift_pins(shift, &pins, core->spi.miso);

@@ -192,6 +192,8 @@ void passo_advance_surroundings_skip(struct passo_channel *channel, uint64_t clo
 		passo_outputs_skip(&channel->outputs, clocks);
 	if (channel->encoders.present)
 		passo_positions_skip(&channel->encoders.positions, clocks);
+	if (channel->trackers.present)
+		passo_trackers_skip(channel, clocks);
 }
 
 void passo_advance_profile_skip(struct passo_channel *channel, uint64_t clocks)

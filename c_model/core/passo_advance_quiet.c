@@ -95,7 +95,7 @@ uint64_t passo_advance_ramp_quiet(const struct passo_ramp_unit *ramp)
 
 uint64_t passo_advance_axis_quiet(const struct passo_channel *channel, unsigned axis)
 {
-	const bool direction = ((uint32_t)channel->line.directions >> axis & 1u) != 0u;
+	const bool direction = passo_trackers_join(channel, axis).direction;
 	const uint32_t clocks = passo_axis_quiet(&channel->axis[axis], direction);
 
 	return clocks == UINT32_MAX ? UINT64_MAX : clocks;
@@ -136,7 +136,7 @@ static bool rest_settled(const struct passo_channel *channel)
 
 	for (unsigned i = 0; i < channel->axes; i++)
 		at_rest = at_rest && channel->axis[i].quiet;
-	at_rest = at_rest && passo_outputs_quiet(&channel->outputs);
+	at_rest = at_rest && passo_outputs_quiet(&channel->outputs) && !channel->trackers.busy;
 	return channel->occupied_before == (occupied ? 7u : 0u) && channel->at_rest == at_rest;
 }
 
@@ -165,7 +165,8 @@ uint64_t passo_advance_surroundings_quiet(
 	    || !outputs_settled(channel, inputs->bus) || !commands_settled(channel) || line->load_start
 	    || line->load_start_q || line->underrun
 	    || !ramps_settled(&channel->ramp_queue, inputs->parameters)
-	    || !lines_settled(channel, inputs->parameters) || !passo_encoders_quiet(channel, inputs))
+	    || !lines_settled(channel, inputs->parameters) || !passo_encoders_quiet(channel, inputs)
+	    || !passo_trackers_quiet(channel, inputs))
 		return 0;
 	const uint64_t clocks = passo_advance_least(
 	    passo_inputs_quiet(channel, inputs), passo_positions_quiet(&channel->positions));

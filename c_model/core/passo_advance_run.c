@@ -32,7 +32,7 @@ static bool is_watched(const struct passo_channel *channel)
 {
 	const struct passo_inputs_unit *inputs = &channel->inputs;
 
-	return channel->has_outputs || channel->encoders.present
+	return channel->has_outputs || channel->encoders.present || channel->trackers.present
 	    || (inputs->input[PASSO_KIND_LIMIT_LOW].level | inputs->input[PASSO_KIND_LIMIT_HIGH].level
 	           | inputs->limits.closed_low | inputs->limits.closed_high)
 	           != 0u;

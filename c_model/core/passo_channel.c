@@ -43,6 +43,7 @@ void passo_channel_reset(
 	passo_output_registers_reset(&channel->output_registers);
 	passo_outputs_reset(&channel->outputs);
 	passo_encoders_reset(&channel->encoders, parameters->encoders != 0u);
+	passo_trackers_reset(&channel->trackers, parameters->trackers != 0u);
 	passo_inputs_reset(&channel->inputs);
 }
 
@@ -57,6 +58,7 @@ void passo_channel_restart(struct passo_channel *channel, const struct passo_cha
 	for (unsigned axis = 0; axis < parameters->axes; axis++)
 		passo_axis_restart(&channel->axis[axis], &before->axis[axis]);
 	passo_inputs_restart(&channel->inputs, &before->inputs);
+	passo_trackers_restart(&channel->trackers, &before->trackers);
 }
 
 static struct passo_channel_wires gather_wires(
@@ -163,12 +165,13 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 	bool take_ramp;
 	bool take_now;
 	bool axes_quiet = true;
+	struct passo_tracker_join_result steps[PASSO_AXES_MAX];
 
 	for (unsigned i = 0; i < channel->axes; i++)
 		axes_quiet = axes_quiet && channel->axis[i].quiet;
 	/* a line loaded in the clock of a stop changes DIR up to 4 clocks later */
 	channel->at_rest = !wires.occupied && channel->occupied_before == 0u && axes_quiet
-	                && passo_outputs_quiet(&channel->outputs);
+	                && passo_outputs_quiet(&channel->outputs) && !channel->trackers.busy;
 	channel->occupied_before =
 	    (uint8_t)(((uint32_t)channel->occupied_before << 1 | (wires.occupied ? 1u : 0u)) & 7u);
 	passo_admission_clock(&channel->admission, bus, &needs);
@@ -183,10 +186,13 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 	passo_positions_clock(
 	    &channel->positions, positions, registers.command_zero, inputs->snapshot, wires.requests.latch);
 	passo_encoders_clock(channel, inputs, &wires);
+	for (unsigned i = 0; i < channel->axes; i++)
+		steps[i] = passo_trackers_join(channel, i);
+	passo_trackers_clock(channel, bus, &wires);
 	for (unsigned i = 0; i < channel->axes; i++) {
 		const struct passo_axis_wires axis_wires = {
-		    .step_request = passo_dda_step_request(&channel->dda[i], &channel->line),
-		    .direction = ((uint32_t)channel->line.directions >> i & 1u) != 0u,
+		    .step_request = steps[i].step_request,
+		    .direction = steps[i].direction,
 		    .drop = wires.drop,
 		    .zero = registers.command_zero,
 		    .clear = registers.command_clear,

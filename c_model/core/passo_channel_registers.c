@@ -64,7 +64,8 @@ uint32_t passo_channel_registers_value(const struct passo_channel *channel, uint
 		return channel->path.velocity_high << 8 | channel->path.velocity_low >> 16;
 	default:
 		return passo_inputs_value(&channel->inputs, address)
-		     | passo_encoder_registers_value(channel, address);
+		     | passo_encoder_registers_value(channel, address)
+		     | passo_trackers_value(channel, address);
 	}
 }
 
@@ -78,6 +79,8 @@ uint32_t passo_channel_value_now(const struct passo_channel *channel, uint8_t ad
 		return channel->positions.copies[number];
 	case PASSO_CHANNEL_TRIGGER_POSITION_BASE:
 		return channel->positions.latched_copies[number];
+	case PASSO_CHANNEL_TRACKER_POSITION_BASE:
+		return channel->trackers.axis[number].shown;
 	case PASSO_CHANNEL_ENCODER_POSITION_BASE:
 		return channel->encoders.positions.copies[number];
 	default:

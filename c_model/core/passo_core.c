@@ -60,7 +60,8 @@ bool passo_core_reset(struct passo_core *core, const struct passo_parameters *pa
 	    || !in_range(parameters->axes, 1, PASSO_AXES_MAX)
 	    || !in_range(parameters->tick_log2, PASSO_TICK_LOG2_MIN, PASSO_TICK_LOG2_MAX)
 	    || !in_range(parameters->line_queue_log2, 2, 8) || !in_range(parameters->ramp_queue_log2, 2, 8)
-	    || parameters->inputs > 1u || parameters->encoders > 1u || parameters->outputs > 1u)
+	    || parameters->inputs > 1u || parameters->encoders > 1u || parameters->outputs > 1u
+	    || parameters->trackers > 1u)
 		return false;
 	memset(core, 0, sizeof *core);
 	core->parameters = *parameters;
@@ -157,7 +158,8 @@ bool passo_core_any_moving(const struct passo_core *core)
 {
 	for (unsigned i = 0; i < core->parameters.channels; i++) {
 		const enum passo_state state = core->channel[i].motion.state;
-		if (state == PASSO_STATE_RUN || state == PASSO_STATE_SETTLE || state == PASSO_STATE_DRAIN)
+		if (state == PASSO_STATE_RUN || state == PASSO_STATE_SETTLE || state == PASSO_STATE_DRAIN
+		    || core->channel[i].trackers.busy)
 			return true;
 	}
 	return false;

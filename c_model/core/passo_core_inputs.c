@@ -32,8 +32,8 @@ struct passo_requests passo_inputs_requests(
 	const struct passo_machine_unit *machine = inputs->machine;
 	const enum passo_trigger_action action = (enum passo_trigger_action)trigger->action;
 	const enum passo_state state = channel->motion.state;
-	const bool moving =
-	    state == PASSO_STATE_RUN || state == PASSO_STATE_SETTLE || state == PASSO_STATE_DRAIN;
+	const bool moving = state == PASSO_STATE_RUN || state == PASSO_STATE_SETTLE
+	                 || state == PASSO_STATE_DRAIN || channel->trackers.busy;
 	const bool all_off = machine->watchdog_disable || (machine->estop_seen & 2u) != 0u;
 	const bool hard = trigger->latch && action == PASSO_TRIGGER_ACTION_HARD_STOP;
 	const bool soft = trigger->latch && action == PASSO_TRIGGER_ACTION_SOFT_STOP;
@@ -151,7 +151,8 @@ static bool forgets(const struct passo_channel *channel, const struct passo_bus 
 void passo_inputs_clock(struct passo_inputs_unit *unit, const struct passo_channel *channel,
     const struct passo_channel_inputs *inputs, const struct passo_channel_wires *wires)
 {
-	const bool may_close = passo_channel_quiet(channel) || (wires->occupied && !wires->moving);
+	const bool may_close =
+	    passo_channel_quiet(channel) || (wires->occupied && !wires->moving && !wires->tracking);
 	const bool forget = forgets(channel, inputs->bus, wires->selected);
 	bool changed = false;
 
@@ -229,8 +230,9 @@ uint64_t passo_inputs_quiet(const struct passo_channel *channel, const struct pa
 {
 	const struct passo_inputs_unit *unit = &channel->inputs;
 	struct passo_inputs_unit then = *unit;
-	const struct passo_channel_wires wires = {
-	    .occupied = passo_channel_occupied(channel), .moving = channel->motion.state == PASSO_STATE_RUN};
+	const struct passo_channel_wires wires = {.occupied = passo_channel_occupied(channel),
+	    .moving = channel->motion.state == PASSO_STATE_RUN,
+	    .tracking = channel->trackers.busy};
 	bool waits_for_tick = unit->settling.unknown || unit->settling.changed;
 
 	if (inputs->parameters->inputs == 0u)

@@ -24,8 +24,12 @@ int64_t passo_line_addend(const struct passo_line_unit *line, uint32_t last_subs
 void passo_line_clock(struct passo_line_unit *line, const struct passo_line_queue *queue,
     const struct passo_channel_wires *wires)
 {
-	if (line->load_start_q)
+	if (line->load_start_q) {
 		line->directions = queue->directions;
+		line->moves = 0;
+		for (unsigned i = 0; i < PASSO_AXES_MAX; i++)
+			line->moves |= (uint8_t)((queue->steps[i] != 0u ? 1u : 0u) << i);
+	}
 	line->decide_step = line->add_n;
 	line->load_start_q = line->load_start;
 	line->add_n = wires->substep_taken;

@@ -10,6 +10,7 @@
 #include "passo_command.h"
 #include "passo_core_encoder.h"
 #include "passo_core_outputs.h"
+#include "passo_core_trackers.h"
 #include "passo_pins.h"
 #include "passo_registers.h"
 #include "passo_shapes.h"
@@ -226,6 +227,7 @@ struct passo_line_unit {
 	uint32_t substep_number;
 	bool on_last;
 	uint8_t directions;
+	uint8_t moves; /* axes that the line has steps of */
 	bool add_n, load_start, decide_step, load_start_q;
 	bool no_repeat, no_repeat_before; /* the trigger has ended the ENDLESS line */
 };
@@ -406,6 +408,7 @@ struct passo_channel {
 	struct passo_positions positions;
 	struct passo_inputs_unit inputs;
 	struct passo_encoders encoders;
+	struct passo_trackers trackers;
 	struct passo_output_registers output_registers;
 	struct passo_outputs_unit outputs;
 	uint8_t occupied_before; /* in the previous three clocks */
@@ -433,6 +436,7 @@ struct passo_channel_wires {
 	uint8_t bus_address; /* within the channel */
 	bool line_push, ramp_push;
 	bool occupied, moving, counting, drain;
+	bool tracking; /* an axis moves without a motion, or beside it */
 	bool ramp_valid;
 	bool hold, now_coming; /* from the admission */
 	bool startable, prepare, begins_next, begin_profile;
@@ -581,6 +585,24 @@ uint8_t passo_encoders_index(const struct passo_channel *channel);
 bool passo_encoders_wait(const struct passo_channel *channel);
 /* Whether nothing changes in the encoders until their pins or the axes do. */
 bool passo_encoders_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs);
+
+void passo_trackers_reset(struct passo_trackers *trackers, bool present);
+/* Synchronous reset, which keeps what the host has written; `before` is the state before the clock. */
+void passo_trackers_restart(struct passo_trackers *trackers, const struct passo_trackers *before);
+/* The unit that serves all axes. */
+void passo_tracker_clock(struct passo_channel *channel, const struct passo_bus *bus, bool selected,
+    const struct passo_tracker_wires *wires);
+/* Whether the line that runs moves an axis. */
+bool passo_trackers_path_moves(const struct passo_channel *channel, unsigned axis);
+/* The step of an axis and its direction, of path and tracker; and a clock of all trackers. */
+struct passo_tracker_join_result passo_trackers_join(const struct passo_channel *channel, unsigned axis);
+void passo_trackers_clock(
+    struct passo_channel *channel, const struct passo_bus *bus, const struct passo_channel_wires *wires);
+/* Value of a register that is sampled in the clock of the response; 0 for others. */
+uint32_t passo_trackers_value(const struct passo_channel *channel, uint8_t address);
+/* Whether nothing changes but whose turn it is, and skipping such clocks. */
+bool passo_trackers_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs);
+void passo_trackers_skip(struct passo_channel *channel, uint64_t clocks);
 
 void passo_motion_wires(const struct passo_channel *channel, const struct passo_channel_inputs *inputs,
     struct passo_channel_wires *wires);

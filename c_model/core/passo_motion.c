@@ -12,8 +12,9 @@ static bool aborts(const struct passo_channel *channel, const struct passo_chann
 
 static bool stop_wanted(const struct passo_channel *channel, const struct passo_channel_wires *wires)
 {
-	return aborts(channel, wires) || (wires->moving && (wires->overrun || channel->line.underrun))
-	    || (channel->motion.stopping
+	return aborts(channel, wires) || ((wires->moving || wires->tracking) && wires->overrun)
+	    || (wires->moving && channel->line.underrun)
+	    || (channel->motion.stopping && !wires->tracking
 	        && (channel->motion.rate_was_zero || wires->finished || !wires->moving));
 }
 
@@ -26,7 +27,7 @@ static enum passo_cause cause_of_stop(
 		return PASSO_CAUSE_ESTOP;
 	if (channel->registers.command_abort)
 		return PASSO_CAUSE_ABORT;
-	if (wires->moving && wires->overrun)
+	if ((wires->moving || wires->tracking) && wires->overrun)
 		return PASSO_CAUSE_STEP_OVERRUN;
 	if (wires->requests.hard)
 		return wires->requests.hard_cause;
@@ -49,8 +50,10 @@ void passo_motion_wires(const struct passo_channel *channel, const struct passo_
 	wires->moving = state == PASSO_STATE_RUN || state == PASSO_STATE_SETTLE || state == PASSO_STATE_DRAIN;
 	wires->counting = state == PASSO_STATE_RUN || state == PASSO_STATE_DRAIN;
 	wires->drain = state == PASSO_STATE_DRAIN;
+	wires->tracking = channel->trackers.busy;
 	wires->startable = state == PASSO_STATE_IDLE && inputs->run && channel->line_queue.next_valid
-	                && wires->ramp_valid && !wires->hold && !wires->requests.wait;
+	                && wires->ramp_valid && !wires->hold && !wires->requests.wait
+	                && !(motion->stopping && wires->tracking);
 	wires->prepare = state == PASSO_STATE_IDLE && motion->startable;
 	passo_encoders_wires(channel, wires);
 	wires->begins_next = state == PASSO_STATE_ARMED && (inputs->sync_edge || !inputs->wait_sync)

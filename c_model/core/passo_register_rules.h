@@ -11,7 +11,13 @@
 
 #include "passo_registers.h"
 
-enum passo_part { PASSO_PART_NONE, PASSO_PART_INPUTS, PASSO_PART_ENCODERS, PASSO_PART_OUTPUTS };
+enum passo_part {
+	PASSO_PART_NONE,
+	PASSO_PART_INPUTS,
+	PASSO_PART_ENCODERS,
+	PASSO_PART_OUTPUTS,
+	PASSO_PART_TRACKERS
+};
 
 struct passo_rule {
 	bool read, write, push; /* none: there is no such register */
@@ -151,6 +157,37 @@ static inline struct passo_rule passo_channel_rule(unsigned address)
 		return (struct passo_rule){.write = true, .part = PASSO_PART_ENCODERS, .defined = 0x000000FFu, .maximum = 0x000000FFu};
 	case PASSO_CHANNEL_FOLLOW_STATE:
 		return (struct passo_rule){.read = true, .part = PASSO_PART_ENCODERS};
+	case PASSO_CHANNEL_TRACKER_ENABLE:
+		return (struct passo_rule){.write = true, .part = PASSO_PART_TRACKERS, .defined = 0x000000FFu, .maximum = 0x000000FFu};
+	case PASSO_CHANNEL_TRACKER_STATE:
+		return (struct passo_rule){.read = true, .part = PASSO_PART_TRACKERS};
+	case PASSO_CHANNEL_TRACKER_POSITION_BASE + 0u:
+	case PASSO_CHANNEL_TRACKER_POSITION_BASE + 1u:
+	case PASSO_CHANNEL_TRACKER_POSITION_BASE + 2u:
+	case PASSO_CHANNEL_TRACKER_POSITION_BASE + 3u:
+	case PASSO_CHANNEL_TRACKER_POSITION_BASE + 4u:
+	case PASSO_CHANNEL_TRACKER_POSITION_BASE + 5u:
+	case PASSO_CHANNEL_TRACKER_POSITION_BASE + 6u:
+	case PASSO_CHANNEL_TRACKER_POSITION_BASE + 7u:
+		return (struct passo_rule){.read = true, .per_axis = true, .part = PASSO_PART_TRACKERS};
+	case PASSO_CHANNEL_TRACKER_TARGET_BASE + 0u:
+	case PASSO_CHANNEL_TRACKER_TARGET_BASE + 1u:
+	case PASSO_CHANNEL_TRACKER_TARGET_BASE + 2u:
+	case PASSO_CHANNEL_TRACKER_TARGET_BASE + 3u:
+	case PASSO_CHANNEL_TRACKER_TARGET_BASE + 4u:
+	case PASSO_CHANNEL_TRACKER_TARGET_BASE + 5u:
+	case PASSO_CHANNEL_TRACKER_TARGET_BASE + 6u:
+	case PASSO_CHANNEL_TRACKER_TARGET_BASE + 7u:
+		return (struct passo_rule){.write = true, .per_axis = true, .part = PASSO_PART_TRACKERS, .defined = 0xFFFFFFFFu, .maximum = 0xFFFFFFFFu};
+	case PASSO_CHANNEL_TRACKER_TARGET_DOWN_BASE + 0u:
+	case PASSO_CHANNEL_TRACKER_TARGET_DOWN_BASE + 1u:
+	case PASSO_CHANNEL_TRACKER_TARGET_DOWN_BASE + 2u:
+	case PASSO_CHANNEL_TRACKER_TARGET_DOWN_BASE + 3u:
+	case PASSO_CHANNEL_TRACKER_TARGET_DOWN_BASE + 4u:
+	case PASSO_CHANNEL_TRACKER_TARGET_DOWN_BASE + 5u:
+	case PASSO_CHANNEL_TRACKER_TARGET_DOWN_BASE + 6u:
+	case PASSO_CHANNEL_TRACKER_TARGET_DOWN_BASE + 7u:
+		return (struct passo_rule){.write = true, .per_axis = true, .part = PASSO_PART_TRACKERS, .defined = 0xFFFFFFFFu, .maximum = 0xFFFFFFFFu};
 	default:
 		return (struct passo_rule){0};
 	}
@@ -171,6 +208,10 @@ static inline struct passo_rule passo_axis_rule(unsigned address)
 		return (struct passo_rule){.write = true, .defined = 0x00000001u, .maximum = 0x00000001u};
 	case PASSO_AXIS_INPUTS:
 		return (struct passo_rule){.write = true, .needs_quiet = true, .part = PASSO_PART_INPUTS, .defined = 0x0000007Fu, .maximum = 0x0000007Fu};
+	case PASSO_AXIS_TRACKER_SPEED:
+		return (struct passo_rule){.write = true, .part = PASSO_PART_TRACKERS, .defined = 0xFFFFFFFFu, .maximum = 0xFFFFFFFFu};
+	case PASSO_AXIS_TRACKER_ACCELERATION:
+		return (struct passo_rule){.write = true, .needs_quiet = true, .part = PASSO_PART_TRACKERS, .defined = 0xFFFFFFFFu, .maximum = 0xFFFFFFFFu};
 	default:
 		return (struct passo_rule){0};
 	}

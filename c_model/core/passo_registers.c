@@ -56,6 +56,7 @@ static uint32_t parameters_word(const struct passo_parameters *parameters)
 	    .inputs = parameters->inputs,
 	    .encoders = parameters->encoders,
 	    .outputs = parameters->outputs,
+	    .trackers = parameters->trackers,
 	});
 }
 

@@ -14,6 +14,8 @@ static bool has_part(const struct passo_parameters *parameters, enum passo_part 
 		return parameters->encoders != 0u;
 	case PASSO_PART_OUTPUTS:
 		return parameters->outputs != 0u;
+	case PASSO_PART_TRACKERS:
+		return parameters->trackers != 0u;
 	case PASSO_PART_NONE:
 		break;
 	}

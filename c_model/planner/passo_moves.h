@@ -15,6 +15,7 @@
 	EACH(SIGMOID, PASSO_SHAPE_SIGMOID, "sigmoid") \
 	EACH(JERK, PASSO_SHAPE_EASE, "jerk")
 
+/* Shapes of the ramps of a move. */
 enum passo_profile {
 	PASSO_PROFILE_LINEAR,
 	PASSO_PROFILE_COSINE,
@@ -23,6 +24,7 @@ enum passo_profile {
 	PASSO_PROFILE_COUNT
 };
 
+/* Their names, for messages. */
 #define PASSO_PROFILES_WORDS "linear, cosine, sigmoid or jerk"
 #define PASSO_PROFILES_CHOICE "linear|cosine|sigmoid|jerk"
 

@@ -151,6 +151,7 @@ static inline uint32_t passo_path_motors(const struct passo_path_planner *path)
 	return path->machine.axes;
 }
 
+/* See passo_path_motors(). */
 static inline int64_t passo_path_motor_place(
     const struct passo_path_planner *path, uint32_t motor, const int64_t *axes)
 {
@@ -162,6 +163,7 @@ static inline int64_t passo_path_motor_place(
 #endif
 }
 
+/* See passo_path_motors(). */
 static inline int64_t passo_path_axis_place(
     const struct passo_path_planner *path, uint32_t axis, const int32_t *places, uint32_t *parts)
 {

@@ -110,6 +110,8 @@
 #define PASSO_PARAMETERS_AXES_BITS            4u
 #define PASSO_PARAMETERS_TICK_LOG2_LSB        8u
 #define PASSO_PARAMETERS_TICK_LOG2_BITS       5u
+#define PASSO_PARAMETERS_TRACKERS_LSB         15u
+#define PASSO_PARAMETERS_TRACKERS_BITS        1u
 #define PASSO_PARAMETERS_LINE_QUEUE_LOG2_LSB  16u
 #define PASSO_PARAMETERS_LINE_QUEUE_LOG2_BITS 5u
 #define PASSO_PARAMETERS_RAMP_QUEUE_LOG2_LSB  24u
@@ -579,6 +581,51 @@
 #define PASSO_CHANNEL_FOLLOW_STATE_LOST_BITS    1u
 #define PASSO_CHANNEL_FOLLOW_STATE_LOST_RESET   0x0u
 
+/* Channel: Tracker enable. One bit per axis. A stop of any cause and ZERO clear them; bits of axes that the
+ * core lacks do nothing. */
+#define PASSO_CHANNEL_TRACKER_ENABLE              0x64u
+#define PASSO_CHANNEL_TRACKER_ENABLE_ENABLE_LSB   0u
+#define PASSO_CHANNEL_TRACKER_ENABLE_ENABLE_BITS  8u
+#define PASSO_CHANNEL_TRACKER_ENABLE_ENABLE_RESET 0x00u
+#define PASSO_CHANNEL_TRACKER_ENABLE_DEFINED      0x000000FFu
+
+/* Channel: Tracker state. One bit per axis. */
+#define PASSO_CHANNEL_TRACKER_STATE                0x65u
+#define PASSO_CHANNEL_TRACKER_STATE_ENABLED_LSB    0u
+#define PASSO_CHANNEL_TRACKER_STATE_ENABLED_BITS   8u
+#define PASSO_CHANNEL_TRACKER_STATE_ENABLED_RESET  0x00u
+#define PASSO_CHANNEL_TRACKER_STATE_MOVES_LSB      8u
+#define PASSO_CHANNEL_TRACKER_STATE_MOVES_BITS     8u
+#define PASSO_CHANNEL_TRACKER_STATE_MOVES_RESET    0x00u
+#define PASSO_CHANNEL_TRACKER_STATE_AT_TARGET_LSB  16u
+#define PASSO_CHANNEL_TRACKER_STATE_AT_TARGET_BITS 8u
+
+/* Channel: Tracker position. Steps of an axis that are due to its tracker, rounded down while it moves;
+ * wraps. A hard stop may drop up to 7 of them. */
+#define PASSO_CHANNEL_TRACKER_POSITION_BASE           0x68u
+#define PASSO_CHANNEL_TRACKER_POSITION_COUNT          8u
+#define PASSO_CHANNEL_TRACKER_POSITION_POSITION_LSB   0u
+#define PASSO_CHANNEL_TRACKER_POSITION_POSITION_BITS  32u
+#define PASSO_CHANNEL_TRACKER_POSITION_POSITION_RESET 0x00000000u
+
+/* Channel: Tracker target. Where the tracker of an axis goes: the first array while the last line that
+ * moved the axis went up, or none did, the second one while it went down. Their difference is the backlash. */
+#define PASSO_CHANNEL_TRACKER_TARGET_BASE         0x70u
+#define PASSO_CHANNEL_TRACKER_TARGET_COUNT        8u
+#define PASSO_CHANNEL_TRACKER_TARGET_TARGET_LSB   0u
+#define PASSO_CHANNEL_TRACKER_TARGET_TARGET_BITS  32u
+#define PASSO_CHANNEL_TRACKER_TARGET_TARGET_RESET 0x00000000u
+#define PASSO_CHANNEL_TRACKER_TARGET_DEFINED      0xFFFFFFFFu
+
+/* Channel: Tracker target. Where the tracker of an axis goes: the first array while the last line that
+ * moved the axis went up, or none did, the second one while it went down. Their difference is the backlash. */
+#define PASSO_CHANNEL_TRACKER_TARGET_DOWN_BASE         0x78u
+#define PASSO_CHANNEL_TRACKER_TARGET_DOWN_COUNT        8u
+#define PASSO_CHANNEL_TRACKER_TARGET_DOWN_TARGET_LSB   0u
+#define PASSO_CHANNEL_TRACKER_TARGET_DOWN_TARGET_BITS  32u
+#define PASSO_CHANNEL_TRACKER_TARGET_DOWN_TARGET_RESET 0x00000000u
+#define PASSO_CHANNEL_TRACKER_TARGET_DOWN_DEFINED      0xFFFFFFFFu
+
 /* Channel: where each axis has its registers. */
 #define PASSO_CHANNEL_AXIS_BASE   0x80u
 #define PASSO_CHANNEL_AXIS_COUNT  8u
@@ -663,6 +710,20 @@
 #define PASSO_AXIS_INPUTS_ALARM_DISABLES_BITS       1u
 #define PASSO_AXIS_INPUTS_ALARM_DISABLES_RESET      0x0u
 #define PASSO_AXIS_INPUTS_DEFINED                   0x0000007Fu
+
+/* Axis: Speed of the tracker. The tracker moves no faster. Below its acceleration it does not move. */
+#define PASSO_AXIS_TRACKER_SPEED             0x6u
+#define PASSO_AXIS_TRACKER_SPEED_SPEED_LSB   0u
+#define PASSO_AXIS_TRACKER_SPEED_SPEED_BITS  32u
+#define PASSO_AXIS_TRACKER_SPEED_SPEED_RESET 0x00000000u
+#define PASSO_AXIS_TRACKER_SPEED_DEFINED     0xFFFFFFFFu
+
+/* Axis: Acceleration of the tracker. Greatest change of its speed from one tick to the next. */
+#define PASSO_AXIS_TRACKER_ACCELERATION                    0x7u
+#define PASSO_AXIS_TRACKER_ACCELERATION_ACCELERATION_LSB   0u
+#define PASSO_AXIS_TRACKER_ACCELERATION_ACCELERATION_BITS  32u
+#define PASSO_AXIS_TRACKER_ACCELERATION_ACCELERATION_RESET 0x00000000u
+#define PASSO_AXIS_TRACKER_ACCELERATION_DEFINED            0xFFFFFFFFu
 
 /* Encoder: Encoder setup. How the encoder counts, and what a following error does. */
 #define PASSO_ENCODER_SETUP                      0x0u

@@ -210,6 +210,7 @@ struct passo_parameters_word {
 	bool    inputs;          /* INPUTS. */
 	uint8_t ramp_queue_log2; /* RAMP_QUEUE_LOG2. */
 	uint8_t line_queue_log2; /* LINE_QUEUE_LOG2. */
+	bool    trackers;        /* TRACKERS. */
 	uint8_t tick_log2;       /* TICK_LOG2. */
 	uint8_t axes;            /* AXES per channel. */
 	uint8_t channels;        /* CHANNELS. */
@@ -222,6 +223,7 @@ static inline uint32_t passo_pack_parameters(const struct passo_parameters_word 
 	     | ((uint32_t)word->inputs & 0x1u) << 29
 	     | ((uint32_t)word->ramp_queue_log2 & 0x1Fu) << 24
 	     | ((uint32_t)word->line_queue_log2 & 0x1Fu) << 16
+	     | ((uint32_t)word->trackers & 0x1u) << 15
 	     | ((uint32_t)word->tick_log2 & 0x1Fu) << 8
 	     | ((uint32_t)word->axes & 0xFu) << 4
 	     | ((uint32_t)word->channels & 0xFu);
@@ -235,6 +237,7 @@ static inline struct passo_parameters_word passo_unpack_parameters(uint32_t word
 	    .inputs = (word >> 29 & 0x1u) != 0u,
 	    .ramp_queue_log2 = (uint8_t)(word >> 24 & 0x1Fu),
 	    .line_queue_log2 = (uint8_t)(word >> 16 & 0x1Fu),
+	    .trackers = (word >> 15 & 0x1u) != 0u,
 	    .tick_log2 = (uint8_t)(word >> 8 & 0x1Fu),
 	    .axes = (uint8_t)(word >> 4 & 0xFu),
 	    .channels = (uint8_t)(word & 0xFu),
@@ -671,6 +674,29 @@ static inline struct passo_channel_follow_state passo_unpack_channel_follow_stat
 	    .lost = (word >> 25 & 0x1u) != 0u,
 	    .behind = (word >> 24 & 0x1u) != 0u,
 	    .owed = (uint32_t)(word & 0xFFFFFFu),
+	};
+}
+
+/* Tracker state. One bit per axis. */
+struct passo_channel_tracker_state {
+	uint8_t at_target; /* It is at its target. */
+	uint8_t moves;     /* It moves. */
+	uint8_t enabled;   /* The tracker is enabled. */
+};
+
+static inline uint32_t passo_pack_channel_tracker_state(const struct passo_channel_tracker_state *word)
+{
+	return ((uint32_t)word->at_target & 0xFFu) << 16
+	     | ((uint32_t)word->moves & 0xFFu) << 8
+	     | ((uint32_t)word->enabled & 0xFFu);
+}
+
+static inline struct passo_channel_tracker_state passo_unpack_channel_tracker_state(uint32_t word)
+{
+	return (struct passo_channel_tracker_state){
+	    .at_target = (uint8_t)(word >> 16 & 0xFFu),
+	    .moves = (uint8_t)(word >> 8 & 0xFFu),
+	    .enabled = (uint8_t)(word & 0xFFu),
 	};
 }
 

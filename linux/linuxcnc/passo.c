@@ -12,9 +12,9 @@
 #include <stdatomic.h>
 #include <stdint.h>
 
-#include "hal.h"
 #include "passo.h"
 #include "passo_encoder.h"
+#include "passo_hal.h"
 #include "passo_inputs.h"
 #include "passo_linux.h"
 #include "passo_linux_private.h"
@@ -55,30 +55,31 @@ RTAPI_MP_INT(watchdog_ms, "after which a core with inputs stops without a host; 
 #define BYTE 8u
 #define WORD_BITS 32u
 #define EXIT_WAITS 2000u
-#define SHARE 5u /* of a period that the wire may be busy: a fifth */
+#define PULSE_NS 5000 /* as hostmot2 has them */
+#define SHARE 5u      /* of a period that the wire may be busy: a fifth */
 #define TURNS_MAX 4u
 #define LOOK_WORDS 0.2 /* a read of the state, in a period */
 #define PAST 16u       /* reads of the encoders from which their speed is computed */
 #define COMMA ','
 
 struct stepgen {
-	hal_float_t *command, *feedback, *velocity;
-	hal_s32_t *counts;
-	hal_bit_t *enable, *index_enable;
-	hal_float_t scale, maxvel, maxaccel, stopaccel;
-	hal_u32_t steplen, stepspace, dirsetup, dirhold;
-	hal_bit_t step_invert, dir_invert, enable_invert, home_invert, limit_invert, alarm_invert;
+	hal_float command, feedback, velocity;
+	hal_s32 counts;
+	hal_bit enable, index_enable;
+	hal_float scale, maxvel, maxaccel, stopaccel;
+	hal_u32 steplen, stepspace, dirsetup, dirhold;
+	hal_bit step_invert, dir_invert, enable_invert, home_invert, limit_invert, alarm_invert;
 	int32_t before; /* counts */
 	double origin;  /* steps of the core where the position is 0 */
 };
 
 struct encoder {
 	bool used;
-	hal_s32_t *count, *raw;
-	hal_float_t *position, *velocity;
-	hal_bit_t *index_enable, *reset;
-	hal_float_t scale;
-	hal_bit_t index_invert, index_mask;
+	hal_s32 count, raw;
+	hal_float position, velocity;
+	hal_bit index_enable, reset;
+	hal_float scale;
+	hal_bit index_invert, index_mask;
 	int32_t zero, before[PAST]; /* raw counts of the reads before */
 	bool waits;                 /* for an index after the number `indexes` */
 	uint8_t indexes;
@@ -87,13 +88,13 @@ struct encoder {
 struct pins {
 	struct stepgen stepgen[PASSO_AXES_MAX];
 	struct encoder encoder[PASSO_AXES_MAX];
-	hal_bit_t *input[INPUTS_MAX], *input_not[INPUTS_MAX];
-	hal_bit_t *output[OUTPUTS];
-	hal_float_t *power;
-	hal_bit_t *has_bit, *fault;
-	hal_s32_t *state, *cause, *depth;
-	hal_u32_t *lag, *slowed, *frames, *retries, *words;
-	hal_float_t *trim;
+	hal_bit input[INPUTS_MAX], input_not[INPUTS_MAX];
+	hal_bit output[OUTPUTS];
+	hal_float power;
+	hal_bit has_bit, fault;
+	hal_s32 state, cause, depth;
+	hal_u32 lag, slowed, frames, retries, words;
+	hal_float trim;
 };
 
 /* Off; on; after a fault, until all stepgens are disabled. */
@@ -126,7 +127,7 @@ static atomic_uint under_way;
 static void set_fault(void)
 {
 	phase = FAULTY;
-	*pins->fault = 1;
+	SET(pins->fault, 1);
 }
 
 static void tell_error(const char *doing, enum passo_error error)
@@ -136,7 +137,7 @@ static void tell_error(const char *doing, enum passo_error error)
 	TELL("%s: %s: %s Disable and enable the machine to go on.\n", doing, passo_error_name(error),
 	    passo_error_text(error));
 	if (snapshot->cause == PASSO_CAUSE_WATCHDOG)
-		*pins->has_bit = 1;
+		SET(pins->has_bit, 1);
 	set_fault();
 }
 
@@ -184,7 +185,7 @@ static bool is_enabled(void)
 	bool found = false;
 
 	for (int axis = 0; axis < axes; axis++)
-		found = found || *pins->stepgen[axis].enable;
+		found = found || GET(pins->stepgen[axis].enable);
 	return found;
 }
 
@@ -192,22 +193,22 @@ static bool is_enabled(void)
 static bool check_axis(int axis)
 {
 	const struct stepgen *own = &pins->stepgen[axis];
+	const double scale = GET(own->scale), maxvel = GET(own->maxvel), maxaccel = GET(own->maxaccel);
+	const double stopaccel = GET(own->stopaccel);
 
-	if (!isfinite(own->scale) || own->scale <= 0) {
+	if (!isfinite(scale) || scale <= 0) {
 		TELL("stepgen.%02d.position-scale is %g: set it to the steps per unit, above 0; dir-invert "
 		     "turns the "
 		     "axis around\n",
-		    axis, own->scale);
-	} else if (!isfinite(own->maxvel) || own->maxvel <= 0 || own->maxvel * own->scale > INT32_MAX) {
-		TELL("stepgen.%02d.maxvel is %g: set it to the MAX_VELOCITY of the joint\n", axis,
-		    own->maxvel);
-	} else if (!isfinite(own->maxaccel) || own->maxaccel <= 0 || own->maxaccel * own->scale > INT32_MAX) {
+		    axis, scale);
+	} else if (!isfinite(maxvel) || maxvel <= 0 || maxvel * scale > INT32_MAX) {
+		TELL("stepgen.%02d.maxvel is %g: set it to the MAX_VELOCITY of the joint\n", axis, maxvel);
+	} else if (!isfinite(maxaccel) || maxaccel <= 0 || maxaccel * scale > INT32_MAX) {
 		TELL("stepgen.%02d.maxaccel is %g: set it to the MAX_ACCELERATION of the joint, or more\n",
-		    axis, own->maxaccel);
-	} else if (!isfinite(own->stopaccel) || own->stopaccel < 0
-	           || own->stopaccel * own->scale > INT32_MAX) {
+		    axis, maxaccel);
+	} else if (!isfinite(stopaccel) || stopaccel < 0 || stopaccel * scale > INT32_MAX) {
 		TELL("stepgen.%02d.stopaccel is %g: set it to what the axis bears; 0: as maxaccel\n", axis,
-		    own->stopaccel);
+		    stopaccel);
 	} else {
 		return true;
 	}
@@ -219,36 +220,37 @@ static enum passo_error configure_axis(int axis, struct passo_servo_options *opt
 {
 	const struct stepgen *own = &pins->stepgen[axis];
 	const struct passo_axis_config config = {
-	    .step_high_ns = own->steplen,
-	    .step_low_ns = own->stepspace,
-	    .dir_setup_ns = own->dirsetup,
-	    .dir_hold_ns = own->dirhold,
-	    .step_inverted = own->step_invert,
-	    .direction_inverted = own->dir_invert,
-	    .enable_inverted = own->enable_invert,
+	    .step_high_ns = GET(own->steplen),
+	    .step_low_ns = GET(own->stepspace),
+	    .dir_setup_ns = GET(own->dirsetup),
+	    .dir_hold_ns = GET(own->dirhold),
+	    .step_inverted = GET(own->step_invert),
+	    .direction_inverted = GET(own->dir_invert),
+	    .enable_inverted = GET(own->enable_invert),
 	};
 	const struct passo_input_config switches = {
-	    .limit_low_inverted = own->limit_invert,
-	    .limit_high_inverted = own->limit_invert,
-	    .home_inverted = own->home_invert,
-	    .alarm_inverted = own->alarm_invert,
+	    .limit_low_inverted = GET(own->limit_invert),
+	    .limit_high_inverted = GET(own->limit_invert),
+	    .home_inverted = GET(own->home_invert),
+	    .alarm_inverted = GET(own->alarm_invert),
 	};
 	enum passo_error error = passo_configure_axis(&passo, (uint8_t)axis, &config);
 
 	if (error == PASSO_OK && inputs > 0)
 		error = passo_configure_inputs(&passo, (uint8_t)axis, &switches);
-	options->axis[axis].speed = (uint64_t)(own->maxvel * own->scale * ONE);
-	options->axis[axis].acceleration = (uint64_t)(own->maxaccel * own->scale * ONE);
+	options->axis[axis].speed = (uint64_t)(GET(own->maxvel) * GET(own->scale) * ONE);
+	options->axis[axis].acceleration = (uint64_t)(GET(own->maxaccel) * GET(own->scale) * ONE);
 	options->axis[axis].stop =
-	    (uint64_t)((own->stopaccel > 0 ? own->stopaccel : own->maxaccel) * own->scale * ONE);
+	    (uint64_t)((GET(own->stopaccel) > 0 ? GET(own->stopaccel) : GET(own->maxaccel)) * GET(own->scale)
+	               * ONE);
 	return error;
 }
 
 static enum passo_error configure_encoder(uint8_t axis)
 {
 	const struct passo_encoder_config config = {
-	    .index_inverted = pins->encoder[axis].index_invert,
-	    .index_gated = pins->encoder[axis].index_mask,
+	    .index_inverted = GET(pins->encoder[axis].index_invert),
+	    .index_gated = GET(pins->encoder[axis].index_mask),
 	    .ratio = UINT32_C(1) << 16, /* its following error is not looked at */
 	    .limit = UINT16_MAX,
 	    .stop = PASSO_FOLLOWING_SHOW,
@@ -312,10 +314,10 @@ static void switch_on(void)
 	if (error == PASSO_OK)
 		error = passo_servo_start(&servo);
 	for (int axis = 0; axis < axes && error == PASSO_OK; axis++) {
-		if (*pins->stepgen[axis].enable)
+		if (GET(pins->stepgen[axis].enable))
 			error = passo_enable(&passo, (uint8_t)axis, true);
 	}
-	*pins->lag = servo.lag;
+	SET(pins->lag, servo.lag);
 	turns = turns_of(period_ns);
 	if (error == PASSO_OK)
 		phase = ON;
@@ -330,7 +332,7 @@ static void switch_off(void)
 	if (passo_servo_is_on(&servo))
 		passo_servo_stop(&servo);
 	phase = OFF;
-	*pins->fault = 0;
+	SET(pins->fault, 0);
 	drives_due = true;
 }
 
@@ -361,10 +363,10 @@ static uint32_t output_word(void)
 	if (!outputs)
 		return 0;
 	for (unsigned i = 0; i < OUTPUTS; i++)
-		output.levels |= (uint8_t)((unsigned)(*pins->output[i] != 0) << i);
-	if (*pins->power > 0)
+		output.levels |= (uint8_t)((unsigned)(GET(pins->output[i]) != 0) << i);
+	if (GET(pins->power) > 0)
 		output.power =
-		    *pins->power < 1 ? (uint32_t)(*pins->power * PASSO_POWER_FULL) : PASSO_POWER_FULL;
+		    GET(pins->power) < 1 ? (uint32_t)(GET(pins->power) * PASSO_POWER_FULL) : PASSO_POWER_FULL;
 	return passo_output_word(&passo, &output, &word) == PASSO_OK ? word : 0;
 }
 
@@ -374,13 +376,13 @@ static void command(void)
 
 	for (int axis = 0; axis < axes; axis++) {
 		const struct stepgen *own = &pins->stepgen[axis];
-		const double steps = *own->command * own->scale + own->origin;
+		const double steps = GET(own->command) * GET(own->scale) + own->origin;
 
 		places[axis] = servo.place[axis];
-		if (!*own->enable)
+		if (!GET(own->enable))
 			continue;
 		if (!(fabs(steps) < INT32_MAX)) {
-			TELL("stepgen.%02d.position-cmd is %g: beyond 2^31 steps\n", axis, *own->command);
+			TELL("stepgen.%02d.position-cmd is %g: beyond 2^31 steps\n", axis, GET(own->command));
 			passo_servo_stop(&servo);
 			set_fault();
 			return;
@@ -418,15 +420,15 @@ static void write_pins(long period)
 	period_ns = period;
 	if (phase != OFF && !is_enabled())
 		switch_off();
-	else if (phase == OFF && is_enabled() && !drives_due && !*pins->has_bit)
+	else if (phase == OFF && is_enabled() && !drives_due && !GET(pins->has_bit))
 		switch_on();
 	if (phase == ON)
 		command();
 	else
 		go_off();
-	*pins->depth = (hal_s32_t)servo.depth;
-	*pins->slowed = servo.slowed;
-	*pins->trim = servo.trim * 1e-3;
+	SET(pins->depth, (int32_t)servo.depth);
+	SET(pins->slowed, servo.slowed);
+	SET(pins->trim, servo.trim * 1e-3);
 	if (linux_host.served && !linux_host.real_time)
 		pass_period(period);
 }
@@ -444,8 +446,8 @@ static void read_inputs(void)
 		    i + 1u == inputs
 			? (words[INPUT_WORDS - 1u] >> PASSO_CHANNEL_TRIGGER_STATE_PROBE_LSB & 1u) != 0u
 			: (words[0] >> (i % GROUPS * BYTE + i / GROUPS) & 1u) != 0u;
-		*pins->input[i] = level;
-		*pins->input_not[i] = !level;
+		SET(pins->input[i], level);
+		SET(pins->input_not[i], !level);
 	}
 }
 
@@ -457,12 +459,12 @@ static void read_stepgens(long period)
 		return;
 	for (int axis = 0; axis < axes; axis++) {
 		struct stepgen *own = &pins->stepgen[axis];
-		const double scale = own->scale > 0 ? own->scale : 1;
+		const double scale = GET(own->scale) > 0 ? GET(own->scale) : 1;
 		const double time = (double)period * NS * turns;
 
-		*own->counts = counts[axis];
-		*own->feedback = (counts[axis] - own->origin) / scale;
-		*own->velocity = (counts[axis] - own->before) / (scale * time);
+		SET(own->counts, counts[axis]);
+		SET(own->feedback, (counts[axis] - own->origin) / scale);
+		SET(own->velocity, (counts[axis] - own->before) / (scale * time));
 		own->before = counts[axis];
 	}
 }
@@ -472,9 +474,11 @@ static void extrapolate(long period)
 {
 	for (int axis = 0; axis < axes; axis++) {
 		const struct stepgen *own = &pins->stepgen[axis];
-		const double scale = own->scale > 0 ? own->scale : 1, time = turn * (double)period * NS;
+		const double scale = GET(own->scale) > 0 ? GET(own->scale) : 1,
+			     time = turn * (double)period * NS;
 
-		*own->feedback = (rint(own->before + *own->velocity * scale * time) - own->origin) / scale;
+		SET(own->feedback,
+		    (rint(own->before + GET(own->velocity) * scale * time) - own->origin) / scale);
 	}
 }
 
@@ -490,20 +494,20 @@ static bool set_origin(uint8_t axis, uint16_t latch)
 	    != PASSO_OK)
 		return false;
 	const double since = (int16_t)((uint16_t)words[at] - latch);
-	own->origin =
-	    rint((int32_t)(words[axis] + passo.axis[axis].offset) - since / encoder->scale * own->scale);
+	own->origin = rint(
+	    (int32_t)(words[axis] + passo.axis[axis].offset) - since / GET(encoder->scale) * GET(own->scale));
 	return true;
 }
 
 static void look_for_index(uint8_t axis)
 {
 	struct encoder *own = &pins->encoder[axis];
-	hal_bit_t *const of_axis = axis < axes ? pins->stepgen[axis].index_enable : NULL;
+	const hal_bit of_axis = axis < axes ? pins->stepgen[axis].index_enable : NULL;
 	const uint16_t address =
 	    PASSO_ADDRESS_CHANNEL_BASE + PASSO_CHANNEL_ENCODER_BASE + PASSO_ENCODER_INDEX;
 	uint32_t word;
 
-	if (!*own->index_enable && !(of_axis && *of_axis)) {
+	if (!GET(own->index_enable) && !(of_axis && GET(of_axis))) {
 		own->waits = false;
 		return;
 	}
@@ -516,14 +520,14 @@ static void look_for_index(uint8_t axis)
 		own->indexes = index.indexes;
 		return;
 	}
-	if (of_axis && *of_axis) {
+	if (of_axis && GET(of_axis)) {
 		if (!set_origin(axis, index.latch))
 			return;
-		*of_axis = 0;
+		SET(of_axis, 0);
 	}
-	if (*own->index_enable) {
-		own->zero = *own->raw - (int16_t)((uint16_t)*own->raw - index.latch);
-		*own->index_enable = 0;
+	if (GET(own->index_enable)) {
+		own->zero = GET(own->raw) - (int16_t)((uint16_t)GET(own->raw) - index.latch);
+		SET(own->index_enable, 0);
 	}
 	own->waits = false;
 }
@@ -544,19 +548,19 @@ static void read_encoders(void)
 		struct encoder *own = &pins->encoder[axis];
 		if (!own->used)
 			continue;
-		const double scale = isfinite(own->scale) && own->scale != 0 ? own->scale : 1;
+		const double scale = isfinite(GET(own->scale)) && GET(own->scale) != 0 ? GET(own->scale) : 1;
 
-		own->scale = scale;
-		*own->raw = (int32_t)words[axis - first_encoder];
+		SET(own->scale, scale);
+		SET(own->raw, (int32_t)words[axis - first_encoder]);
 		look_for_index(axis);
-		if (*own->reset)
-			own->zero = *own->raw;
-		*own->count = (int32_t)((uint32_t)*own->raw - (uint32_t)own->zero);
-		*own->position = *own->count / scale;
+		if (GET(own->reset))
+			own->zero = GET(own->raw);
+		SET(own->count, (int32_t)((uint32_t)GET(own->raw) - (uint32_t)own->zero));
+		SET(own->position, GET(own->count) / scale);
 		if (time > 0)
-			*own->velocity =
-			    (int32_t)((uint32_t)*own->raw - (uint32_t)own->before[now]) / (scale * time * US);
-		own->before[now] = *own->raw;
+			SET(own->velocity, (int32_t)((uint32_t)GET(own->raw) - (uint32_t)own->before[now])
+			                       / (scale * time * US));
+		own->before[now] = GET(own->raw);
 	}
 }
 
@@ -573,11 +577,11 @@ static void read_pins(long period)
 		extrapolate(period);
 	if (inputs > 0 && turn + 1u == turns)
 		read_inputs();
-	*pins->state = (hal_s32_t)snapshot->state;
-	*pins->cause = (hal_s32_t)snapshot->cause;
-	*pins->frames = host.counters.frames;
-	*pins->retries = host.counters.retries;
-	*pins->words = linux_host.words;
+	SET(pins->state, (int32_t)snapshot->state);
+	SET(pins->cause, (int32_t)snapshot->cause);
+	SET(pins->frames, host.counters.frames);
+	SET(pins->retries, host.counters.retries);
+	SET(pins->words, linux_host.words);
 }
 
 /* A function of HAL: `arg` is read_pins() or write_pins(). */
@@ -637,29 +641,27 @@ static int make_stepgen(int axis)
 	const char *const name = PREFIX "stepgen.%02d.%s";
 	int failed = 0;
 
-	failed |= hal_pin_float_newf(HAL_IN, &own->command, component, name, axis, "position-cmd");
-	failed |= hal_pin_float_newf(HAL_OUT, &own->feedback, component, name, axis, "position-fb");
-	failed |= hal_pin_float_newf(HAL_OUT, &own->velocity, component, name, axis, "velocity-fb");
-	failed |= hal_pin_s32_newf(HAL_OUT, &own->counts, component, name, axis, "counts");
-	failed |= hal_pin_bit_newf(HAL_IN, &own->enable, component, name, axis, "enable");
-	failed |= hal_param_float_newf(HAL_RW, &own->scale, component, name, axis, "position-scale");
-	failed |= hal_param_float_newf(HAL_RW, &own->maxvel, component, name, axis, "maxvel");
-	failed |= hal_param_float_newf(HAL_RW, &own->maxaccel, component, name, axis, "maxaccel");
-	failed |= hal_param_float_newf(HAL_RW, &own->stopaccel, component, name, axis, "stopaccel");
-	failed |= hal_param_u32_newf(HAL_RW, &own->steplen, component, name, axis, "steplen");
-	failed |= hal_param_u32_newf(HAL_RW, &own->stepspace, component, name, axis, "stepspace");
-	failed |= hal_param_u32_newf(HAL_RW, &own->dirsetup, component, name, axis, "dirsetup");
-	failed |= hal_param_u32_newf(HAL_RW, &own->dirhold, component, name, axis, "dirhold");
-	failed |= hal_param_bit_newf(HAL_RW, &own->step_invert, component, name, axis, "step-invert");
-	failed |= hal_param_bit_newf(HAL_RW, &own->dir_invert, component, name, axis, "dir-invert");
-	failed |= hal_param_bit_newf(HAL_RW, &own->enable_invert, component, name, axis, "enable-invert");
-	failed |= hal_param_bit_newf(HAL_RW, &own->home_invert, component, name, axis, "home-invert");
-	failed |= hal_param_bit_newf(HAL_RW, &own->limit_invert, component, name, axis, "limit-invert");
-	failed |= hal_param_bit_newf(HAL_RW, &own->alarm_invert, component, name, axis, "alarm-invert");
+	failed |= new_float(component, HAL_IN, &own->command, 0, name, axis, "position-cmd");
+	failed |= new_float(component, HAL_OUT, &own->feedback, 0, name, axis, "position-fb");
+	failed |= new_float(component, HAL_OUT, &own->velocity, 0, name, axis, "velocity-fb");
+	failed |= new_s32(component, HAL_OUT, &own->counts, 0, name, axis, "counts");
+	failed |= new_bit(component, HAL_IN, &own->enable, 0, name, axis, "enable");
+	failed |= new_float(component, HAL_RW, &own->scale, 1, name, axis, "position-scale");
+	failed |= new_float(component, HAL_RW, &own->maxvel, 0, name, axis, "maxvel");
+	failed |= new_float(component, HAL_RW, &own->maxaccel, 0, name, axis, "maxaccel");
+	failed |= new_float(component, HAL_RW, &own->stopaccel, 0, name, axis, "stopaccel");
+	failed |= new_u32(component, HAL_RW, &own->steplen, PULSE_NS, name, axis, "steplen");
+	failed |= new_u32(component, HAL_RW, &own->stepspace, PULSE_NS, name, axis, "stepspace");
+	failed |= new_u32(component, HAL_RW, &own->dirsetup, PULSE_NS, name, axis, "dirsetup");
+	failed |= new_u32(component, HAL_RW, &own->dirhold, PULSE_NS, name, axis, "dirhold");
+	failed |= new_bit(component, HAL_RW, &own->step_invert, 0, name, axis, "step-invert");
+	failed |= new_bit(component, HAL_RW, &own->dir_invert, 0, name, axis, "dir-invert");
+	failed |= new_bit(component, HAL_RW, &own->enable_invert, 0, name, axis, "enable-invert");
+	failed |= new_bit(component, HAL_RW, &own->home_invert, 0, name, axis, "home-invert");
+	failed |= new_bit(component, HAL_RW, &own->limit_invert, 0, name, axis, "limit-invert");
+	failed |= new_bit(component, HAL_RW, &own->alarm_invert, 0, name, axis, "alarm-invert");
 	if (pins->encoder[axis].used)
-		failed |= hal_pin_bit_newf(HAL_IO, &own->index_enable, component, name, axis, "index-enable");
-	own->scale = 1;
-	own->steplen = own->stepspace = own->dirsetup = own->dirhold = 5000; /* as those of hostmot2, ns */
+		failed |= new_bit(component, HAL_IO, &own->index_enable, 0, name, axis, "index-enable");
 	return failed;
 }
 
@@ -669,16 +671,15 @@ static int make_encoder(uint8_t axis)
 	const char *const name = PREFIX "encoder.%02d.%s";
 	int failed = 0;
 
-	failed |= hal_pin_s32_newf(HAL_OUT, &own->count, component, name, axis, "count");
-	failed |= hal_pin_s32_newf(HAL_OUT, &own->raw, component, name, axis, "rawcounts");
-	failed |= hal_pin_float_newf(HAL_OUT, &own->position, component, name, axis, "position");
-	failed |= hal_pin_float_newf(HAL_OUT, &own->velocity, component, name, axis, "velocity");
-	failed |= hal_pin_bit_newf(HAL_IO, &own->index_enable, component, name, axis, "index-enable");
-	failed |= hal_pin_bit_newf(HAL_IN, &own->reset, component, name, axis, "reset");
-	failed |= hal_param_float_newf(HAL_RW, &own->scale, component, name, axis, "scale");
-	failed |= hal_param_bit_newf(HAL_RW, &own->index_invert, component, name, axis, "index-invert");
-	failed |= hal_param_bit_newf(HAL_RW, &own->index_mask, component, name, axis, "index-mask");
-	own->scale = 1;
+	failed |= new_s32(component, HAL_OUT, &own->count, 0, name, axis, "count");
+	failed |= new_s32(component, HAL_OUT, &own->raw, 0, name, axis, "rawcounts");
+	failed |= new_float(component, HAL_OUT, &own->position, 0, name, axis, "position");
+	failed |= new_float(component, HAL_OUT, &own->velocity, 0, name, axis, "velocity");
+	failed |= new_bit(component, HAL_IO, &own->index_enable, 0, name, axis, "index-enable");
+	failed |= new_bit(component, HAL_IN, &own->reset, 0, name, axis, "reset");
+	failed |= new_float(component, HAL_RW, &own->scale, 1, name, axis, "scale");
+	failed |= new_bit(component, HAL_RW, &own->index_invert, 0, name, axis, "index-invert");
+	failed |= new_bit(component, HAL_RW, &own->index_mask, 0, name, axis, "index-mask");
 	return failed;
 }
 
@@ -687,14 +688,13 @@ static int make_inputs_and_outputs(void)
 	int failed = 0;
 
 	for (unsigned i = 0; i < inputs; i++) {
-		failed |= hal_pin_bit_newf(HAL_OUT, &pins->input[i], component, PREFIX "gpio.%03u.in", i);
-		failed |=
-		    hal_pin_bit_newf(HAL_OUT, &pins->input_not[i], component, PREFIX "gpio.%03u.in-not", i);
+		failed |= new_bit(component, HAL_OUT, &pins->input[i], 0, PREFIX "gpio.%03u.in", i);
+		failed |= new_bit(component, HAL_OUT, &pins->input_not[i], 0, PREFIX "gpio.%03u.in-not", i);
 	}
 	for (unsigned i = 0; outputs && i < OUTPUTS; i++)
-		failed |= hal_pin_bit_newf(HAL_IN, &pins->output[i], component, PREFIX "output.%02u", i);
+		failed |= new_bit(component, HAL_IN, &pins->output[i], 0, PREFIX "output.%02u", i);
 	if (outputs)
-		failed |= hal_pin_float_newf(HAL_IN, &pins->power, component, PREFIX "power");
+		failed |= new_float(component, HAL_IN, &pins->power, 0, PREFIX "power");
 	return failed;
 }
 
@@ -716,17 +716,17 @@ static int make_pins(void)
 	for (int axis = 0; axis < axes; axis++)
 		failed |= make_stepgen(axis);
 	failed |= make_inputs_and_outputs();
-	failed |= hal_pin_bit_newf(HAL_IO, &pins->has_bit, component, PREFIX "watchdog.has-bit");
-	failed |= hal_pin_bit_newf(HAL_OUT, &pins->fault, component, PREFIX "fault");
-	failed |= hal_pin_s32_newf(HAL_OUT, &pins->state, component, PREFIX "state");
-	failed |= hal_pin_s32_newf(HAL_OUT, &pins->cause, component, PREFIX "cause");
-	failed |= hal_pin_s32_newf(HAL_OUT, &pins->depth, component, PREFIX "queue.depth");
-	failed |= hal_pin_u32_newf(HAL_OUT, &pins->lag, component, PREFIX "queue.lag");
-	failed |= hal_pin_u32_newf(HAL_OUT, &pins->slowed, component, PREFIX "queue.slowed");
-	failed |= hal_pin_float_newf(HAL_OUT, &pins->trim, component, PREFIX "queue.trim-ppm");
-	failed |= hal_pin_u32_newf(HAL_OUT, &pins->frames, component, PREFIX "link.frames");
-	failed |= hal_pin_u32_newf(HAL_OUT, &pins->retries, component, PREFIX "link.retries");
-	failed |= hal_pin_u32_newf(HAL_OUT, &pins->words, component, PREFIX "link.words");
+	failed |= new_bit(component, HAL_IO, &pins->has_bit, 0, PREFIX "watchdog.has-bit");
+	failed |= new_bit(component, HAL_OUT, &pins->fault, 0, PREFIX "fault");
+	failed |= new_s32(component, HAL_OUT, &pins->state, 0, PREFIX "state");
+	failed |= new_s32(component, HAL_OUT, &pins->cause, 0, PREFIX "cause");
+	failed |= new_s32(component, HAL_OUT, &pins->depth, 0, PREFIX "queue.depth");
+	failed |= new_u32(component, HAL_OUT, &pins->lag, 0, PREFIX "queue.lag");
+	failed |= new_u32(component, HAL_OUT, &pins->slowed, 0, PREFIX "queue.slowed");
+	failed |= new_float(component, HAL_OUT, &pins->trim, 0, PREFIX "queue.trim-ppm");
+	failed |= new_u32(component, HAL_OUT, &pins->frames, 0, PREFIX "link.frames");
+	failed |= new_u32(component, HAL_OUT, &pins->retries, 0, PREFIX "link.retries");
+	failed |= new_u32(component, HAL_OUT, &pins->words, 0, PREFIX "link.words");
 	failed |= hal_export_funct(PREFIX "read", call, (void *)&READ, 1, 0, component);
 	failed |= hal_export_funct(PREFIX "write", call, (void *)&WRITE, 1, 0, component);
 	return failed;
@@ -758,8 +758,11 @@ static bool open_core(void)
 	outputs = passo.has_outputs;
 	if (!check_encoders())
 		return false;
+	if (inputs == 0 && watchdog_ms > 0)
+		TELL("the core has no inputs, and so no watchdog: build it with INPUTS=1, or load with "
+		     "watchdog_ms=0 if the drives may stay on when the host fails\n");
 	if (inputs == 0)
-		return true;
+		return watchdog_ms == 0;
 	const uint64_t time = passo_clocks(&passo, (uint32_t)watchdog_ms * MS);
 	if (passo_configure_watchdog(&passo, time, time) == PASSO_OK)
 		return true;

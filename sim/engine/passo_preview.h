@@ -24,11 +24,13 @@ struct passo_preview_config {
 	size_t length;
 };
 
+enum { PASSO_PREVIEW_NO_PROBE = -1 }; /* instead of an error: the line probes, no probe is fitted */
+
 /* A refused line, or what was found in its place. */
 struct passo_preview_refusal {
 	uint32_t line; /* counted from 0 */
-	int32_t error; /* enum passo_gcode_error; -1: a probe, which is not fitted; below: minus an enum
-	                  passo_error of the player, minus 1 */
+	int32_t error; /* enum passo_gcode_error; PASSO_PREVIEW_NO_PROBE; below: minus an enum passo_error of
+	                  the player, minus 1 */
 };
 
 /* What a check has found. */

@@ -13,8 +13,9 @@
 
 #define EXPORT(name) __attribute__((export_name(name)))
 
-/* A core after reset, with no events and no text; false if memory is short. */
-bool web_start(uint32_t axes, uint32_t clock_hz);
+/* A core after reset, with no events and no text; false if memory is short. `turns`: it has encoders and
+ * outputs, for a spindle. */
+bool web_start(uint32_t axes, uint32_t clock_hz, bool turns);
 
 struct passo_engine *web_engine(void);
 

@@ -5,19 +5,23 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "passo_preview.h"
 #include "passo_rests.h"
 #include "passo_web.h"
 
 enum {
-	LOOPS_PER_SECOND = 1000, /* polls of the driver */
-	PATIENCE = 3600,         /* seconds without a line that are too many */
+	LOOPS_PER_SECOND = 1000,    /* polls of the driver */
+	FOLLOWS_PER_SECOND = 10000, /* the same in step with the spindle */
+	PATIENCE = 3600,            /* seconds without a line that are too many */
 	LOOK_AHEAD = 48,
 	AXES = 6,
 	SLEWS_PER_SECOND = 20, /* of hold and stop, from full speed */
 	NANOMETERS = 1000000,
 	REFUSED_MOST = 20, /* bad lines that are reported */
 	LINE = 256,
-	REST = 8, /* pulses that time passes for after the end */
+	FILES = 256,
+	CHANGES = 1024, /* of the spindle's encoder, which are forgotten at a time */
+	REST = 8,       /* pulses that time passes for after the end */
 };
 
 enum progress { DONE, GOES_ON, FAILED = -1 };
@@ -32,6 +36,8 @@ struct web_machine {
 	double core_axes; /* a frame holds more lines for a core with fewer, which the ramps depend on */
 	double step_high, step_low, dir_setup, dir_hold; /* clocks */
 	double spindle_maximum, left_out, inputs, power;
+	double turn_counts, interval, wander,
+	    start_up;  /* of a spindle with an encoder, as of its rig; or 0 */
 	double motors; /* 0: one for each axis, and no map */
 	double plus[PASSO_AXES_MAX], minus[PASSO_AXES_MAX];
 	struct limits mixed, axis[AXES];
@@ -39,10 +45,12 @@ struct web_machine {
 
 static struct {
 	struct web_machine machine;
-	char *text;
-	size_t length, at; /* at: of the next line */
-	uint32_t lines;    /* taken */
-	uint32_t refused;
+	char *text;              /* files, each up to its end */
+	size_t length, room, at; /* room: behind the length; at: of the next line */
+	uint32_t lines;          /* taken */
+	uint32_t begun;          /* those before the thread that lines continue */
+	uint32_t kept[FILES];    /* lines of each file */
+	uint32_t files, refused, unread;
 	uint32_t chords;
 	uint64_t quiet; /* clock of the last chord */
 	uint16_t inputs;
@@ -51,6 +59,7 @@ static struct {
 	struct passo_path_item items[LOOK_AHEAD];
 	struct passo_host host;
 	struct passo passo;
+	struct passo_rig *rig; /* the spindle; null: there is none */
 } web;
 
 static uint64_t q32(double value)
@@ -84,7 +93,8 @@ static void read_settings(void)
 		.spindle_maximum = (uint32_t)machine->spindle_maximum,
 		.left_out = (uint8_t)machine->left_out,
 		.inputs = (uint8_t)machine->inputs,
-		.power = machine->power != 0.0},
+		.power = machine->power != 0.0,
+		.turn_counts = (uint16_t)machine->turn_counts},
 	    .inputs = &web.inputs};
 	for (unsigned motor = 0; motor < PASSO_AXES_MAX; motor++) {
 		path->motors.plus[motor] = (uint8_t)machine->plus[motor];
@@ -104,42 +114,18 @@ static const char *next_line(size_t *at, size_t *length)
 	return line;
 }
 
-static void refuse(uint32_t number, enum passo_gcode_error error)
+/* What is wrong with a line of the last file. */
+static void refuse(const struct passo_preview_refusal *refusal)
 {
+	const unsigned file = (unsigned)web.files, number = (unsigned)refusal->line + 1u;
 	char text[LINE];
 
-	if (error == PASSO_GCODE_OK)
-		snprintf(text, sizeof text, "%u: no probe is fitted\n", (unsigned)number);
+	if (refusal->error == PASSO_PREVIEW_NO_PROBE)
+		snprintf(text, sizeof text, "%u:%u: no probe is fitted\n", file, number);
 	else
-		snprintf(text, sizeof text, "%u: error:%u: %s\n", (unsigned)number, (unsigned)error,
-		    passo_gcode_error_text(error));
+		snprintf(text, sizeof text, "%u:%u: error:%u: %s\n", file, number, (unsigned)refusal->error,
+		    passo_gcode_error_text((enum passo_gcode_error)refusal->error));
 	web_write(NULL, text);
-}
-
-/* Writes what is wrong with the lines, a line each; returns the number of bad ones. Cuts the text at the end
- * of the program. */
-static uint32_t check(void)
-{
-	struct passo_gcode *gcode = &web.program.gcode;
-	uint32_t number = 0, bad = 0;
-
-	passo_gcode_open(gcode, &web.settings.gcode);
-	for (size_t at = 0, length; at < web.length;) {
-		const char *line = next_line(&at, &length);
-		struct passo_gcode_action action;
-		const enum passo_gcode_error error = passo_program_line(&web.program, line, length);
-
-		number++;
-		if (error != PASSO_GCODE_OK && bad++ < REFUSED_MOST)
-			refuse(number, error);
-		while (error == PASSO_GCODE_OK && passo_gcode_next(gcode, &action)) {
-			if (action.kind == PASSO_GCODE_PROBE && bad++ < REFUSED_MOST)
-				refuse(number, PASSO_GCODE_OK);
-			if (action.kind == PASSO_GCODE_END)
-				web.length = at;
-		}
-	}
-	return bad;
 }
 
 static enum passo_error open_driver(void)
@@ -171,6 +157,39 @@ static enum passo_error open_driver(void)
 	return error;
 }
 
+/* As sim/passo/spindle_at.py: its encoder is at the inputs behind those of the motors. False: memory is
+ * short. */
+static bool attach_spindle(void)
+{
+	static struct passo_rig_config config;
+	const struct web_machine *machine = &web.machine;
+	const uint8_t motors = (uint8_t)(machine->motors != 0.0 ? machine->motors : machine->axes);
+
+	config = (struct passo_rig_config){.seed = 1, .axes = (uint32_t)machine->core_axes, .wheels = 1};
+	config.wheel[0] = (struct passo_rig_wheel){.axis = motors,
+	    .interval = (uint64_t)machine->interval,
+	    .wander = (uint32_t)machine->wander,
+	    .per_turn = (uint32_t)machine->turn_counts,
+	    .start_up = (uint64_t)machine->start_up};
+	web.program.machine.spindle = motors;
+	web.rig = passo_engine_attach(web_engine(), &config);
+	return web.rig != NULL;
+}
+
+/* The spindle has the speed of the program; lines behind a thread do not change it. */
+static void drive_spindle(void)
+{
+	static struct passo_rig_change changes[CHANGES];
+	const struct passo_player *player = &web.program.player;
+	const uint32_t output =
+	    passo_player_follows(player) ? player->thread.output : passo_gcode_output(&web.program.gcode);
+	const uint32_t power = output & UINT16_MAX;
+
+	passo_rig_drive(web.rig, 0, power + (power > 0u));
+	while (passo_rig_drain(web.rig, changes, CHANGES) == CHANGES)
+		continue;
+}
+
 /* One turn of the main loop, as in sim/passo/host_loop.py. */
 static enum passo_error turn(uint64_t period)
 {
@@ -178,7 +197,7 @@ static enum passo_error turn(uint64_t period)
 	const uint64_t began = passo_engine_clock(engine);
 	const enum passo_error error = passo_program_poll(&web.program);
 	const uint64_t look = passo_engine_clock(engine) - began;
-	const bool rests = passo_program_rests(&web.program);
+	const bool rests = !passo_player_follows(&web.program.player) && passo_program_rests(&web.program);
 
 	web_run(period);
 	if (rests && look > 0u)
@@ -195,6 +214,8 @@ static enum passo_error feed(void)
 		if (web.at < web.length) {
 			const char *line = next_line(&web.at, &length);
 
+			if (!passo_player_follows(&web.program.player))
+				web.begun = web.lines;
 			passo_program_line(&web.program, line, length);
 			web.lines++;
 		} else {
@@ -210,22 +231,25 @@ EXPORT("machine") struct web_machine *web_machine(void)
 	return &web.machine;
 }
 
-/* Room for a program; null if memory is short. */
-EXPORT("program") char *web_program(uint32_t length)
+/* Room for a text behind the files; null if memory is short. */
+EXPORT("room") char *web_room(uint32_t length)
 {
-	free(web.text);
-	web.length = length;
-	web.text = malloc(length + 1u);
-	return web.text;
+	char *text = realloc(web.text, web.length + length + 1u);
+
+	if (!text)
+		return NULL;
+	web.text = text;
+	web.room = length;
+	return text + web.length;
 }
 
-/* The error of the program's text as a single line of G-code, for the last machine that was begun. */
+/* The error of the text in the room as a single line of G-code, for the last machine that was begun. */
 EXPORT("tries") uint32_t web_tries(void)
 {
 	struct passo_gcode_line line;
 
 	passo_gcode_open(&web.program.gcode, &web.settings.gcode);
-	passo_gcode_line_read(&line, web.text, web.length);
+	passo_gcode_line_read(&line, web.text + web.length, web.room);
 	return (uint32_t)passo_gcode_execute(&web.program.gcode, line.text);
 }
 
@@ -235,23 +259,75 @@ EXPORT("refused") uint32_t web_refused(void)
 	return web.refused;
 }
 
-/* Checks the program and opens the machine: web_go() follows, or what is wrong was written. */
+/* Begins a program for the machine, without any file. */
+EXPORT("reset") void web_reset(void)
+{
+	web.length = web.at = 0;
+	web.lines = web.begun = web.chords = web.files = web.refused = web.unread = 0;
+	web.quiet = 0;
+	read_settings();
+	passo_gcode_open(&web.program.gcode, &web.settings.gcode);
+}
+
+/* The interpreter behind the files so far: a struct passo_gcode. */
+EXPORT("gcode") struct passo_gcode *web_gcode(void)
+{
+	return &web.program.gcode;
+}
+
+/* Checks the text in the room and adds it, up to its end, as a file. What is wrong is written, a line each:
+ * the number of the file, of the line, and the error. False: there are too many files. */
+EXPORT("add") bool web_add(void)
+{
+	struct passo_preview_refusal refusals[REFUSED_MOST];
+	const char *text = web.text + web.length;
+
+	if (web.files == FILES)
+		return false;
+	const struct passo_preview_check made =
+	    passo_preview_check(&web.program.gcode, text, web.room, refusals, REFUSED_MOST);
+	for (uint32_t i = 0; i < made.refused && web.refused + i < REFUSED_MOST; i++)
+		refuse(&refusals[i]);
+	web.refused += made.refused;
+	web.unread += made.unread;
+	for (uint32_t line = 0; line < made.lines; line++)
+		web.length += passo_gcode_line_count(
+		    web.text + web.length, (size_t)(text + web.room - (web.text + web.length)));
+	web.kept[web.files++] = made.lines;
+	return true;
+}
+
+/* Lines of a file up to its end. */
+EXPORT("kept") uint32_t web_kept(uint32_t file)
+{
+	return web.kept[file];
+}
+
+/* Lines with words behind the ends of the files. */
+EXPORT("unread") uint32_t web_unread(void)
+{
+	return web.unread;
+}
+
+/* Opens the machine: web_go() follows, or what is wrong was written. */
 EXPORT("begin") int32_t web_begin(void)
 {
-	web.at = web.lines = web.chords = web.refused = 0;
-	web.quiet = 0;
-	if (!web_start((uint32_t)web.machine.core_axes, (uint32_t)web.machine.clock_hz)) {
+	const struct web_machine *machine = &web.machine;
+	const bool turns = machine->turn_counts != 0.0;
+
+	web.rig = NULL;
+	if (!web_start((uint32_t)machine->core_axes, (uint32_t)machine->clock_hz, turns)) {
 		web_write(NULL, "out of memory");
 		return FAILED;
 	}
-	read_settings();
-	web.refused = check();
-	if (web.refused > 0u)
-		return FAILED;
 	const enum passo_error error = open_driver();
 	if (error != PASSO_OK)
 		web_write(NULL, passo_error_text(error));
-	return error == PASSO_OK ? GOES_ON : FAILED;
+	else if (turns && !attach_spindle())
+		web_write(NULL, "out of memory");
+	else
+		return GOES_ON;
+	return FAILED;
 }
 
 /* Plays a number of turns of the main loop. */
@@ -263,8 +339,12 @@ EXPORT("go") int32_t web_go(uint32_t turns)
 	for (; turns > 0u; turns--) {
 		enum passo_error error = passo_program_is_done(&web.program) ? PASSO_OK : feed();
 
+		if (web.rig)
+			drive_spindle();
 		if (error == PASSO_OK)
-			error = turn(hz / LOOPS_PER_SECOND);
+			error = turn(hz
+			             / (passo_player_follows(&web.program.player) ? FOLLOWS_PER_SECOND
+			                                                          : LOOPS_PER_SECOND));
 		if (error != PASSO_OK) {
 			web_write(NULL, passo_error_text(error));
 			return FAILED;
@@ -287,6 +367,12 @@ EXPORT("go") int32_t web_go(uint32_t turns)
 	return GOES_ON;
 }
 
+/* The line that an error is of. */
+EXPORT("blamed") uint32_t web_blamed(void)
+{
+	return passo_player_follows(&web.program.player) ? web.begun + 1u : web.lines;
+}
+
 /* Lines taken so far, and bytes. */
 EXPORT("taken") uint32_t web_taken(void)
 {
@@ -298,7 +384,7 @@ EXPORT("taken_bytes") uint32_t web_taken_bytes(void)
 	return (uint32_t)web.at;
 }
 
-/* Bytes up to the end of the program. */
+/* Bytes of the files up to their ends. */
 EXPORT("length") uint32_t web_length(void)
 {
 	return (uint32_t)web.length;

@@ -3,6 +3,7 @@
 
 import importlib.util
 import shutil
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import cache
 from importlib.metadata import version
@@ -18,18 +19,22 @@ ENGINE_FLAGS = (*STRICT, "-O3", "-fPIC", *includes(paths.engine, paths.core))
 # A clock of the model goes through tens of small functions in as many files: inlined, it takes 3/4 as long.
 WHOLE = ("-O3", "-flto", "-fno-semantic-interposition")
 CPP_FLAGS = ("-std=gnu++17", "-O2", "-Wall", "-fPIC", "-fno-gnu-unique", *includes(paths.engine, paths.core))
-# Nearly all of a clock of the RTL is the logic of the core, in straight-line code. Clang's takes 7/8 of the
-# time of GCC's, where it is installed; levels of optimization, profiles, Verilator's options change nothing.
+# Nearly all of a clock of the RTL is the logic of the core. Clang's takes 7/8 of the time of GCC's, where it
+# is installed, and with a profile 7/8 of that; with more optimization it takes longer.
 CXX_CORE = "clang++" if shutil.which("clang++") else CXX
+OPTIMIZED = "-O1"
 
 # Every register of the core has a reset, so the value chosen for X does not matter. Hidden symbols need no
 # detour over the table of a shared library: 8 % more clocks per second.
 TOP = "passo_spi_top"
+CLOCKED = paths.engine / "passo_engine.v"  # its top, but with waves
+PROFILE = paths.engine / "engine_profile.cpp"
 # A large core takes half the time to compile when it is one file, which has the headers once.
 ONE_FILE = ("--output-split", "0")
 VERILATOR_FLAGS = (
     *("--cc", "-O3", "--x-assign", "fast", "--x-initial", "fast", "--no-timing", "--no-assert"),
     *ONE_FILE,
+    *("--converge-limit", "10000"),  # of CLOCKS_MOST in engine_rtl.cpp
     *("--prefix", f"V{TOP}"),
 )
 C_FLAGS = ("-fPIC", "-fvisibility=hidden")
@@ -37,6 +42,7 @@ WAVES_FLAGS = ("--trace-fst", "--no-trace-params")  # without the constants of t
 MAKEFILE, MODEL, RUNTIME = f"V{TOP}.mk", f"V{TOP}__ALL.a", "libverilated.a"
 LEVELS = ("step_reset", "dir_reset", "enable_reset")  # parameters with a bit for each pin
 TOLD = ("clock_hz", "build")  # and those with a word
+PARTS = ("inputs", "encoders", "outputs", "trackers")
 WORD_BITS = 32
 
 
@@ -50,7 +56,7 @@ class Parameters(CoreParameters):
         queues = f"{self.line_queue_log2}_{self.ramp_queue_log2}"
         levels = (self.step_reset, self.dir_reset, self.enable_reset)
         reset = "_reset{:x}_{:x}_{:x}".format(*levels) if any(levels) else ""
-        parts = "".join(f"_{part}" for part in ("inputs", "encoders", "outputs") if getattr(self, part))
+        parts = "".join(f"_{part}" for part in PARTS if getattr(self, part))
         told = f"_{self.clock_hz}Hz_{self.build:x}" if self.clock_hz or self.build else ""
         return f"{self.channels}x{self.axes}_{self.tick_log2}_{queues}{parts}{reset}{told}"
 
@@ -93,7 +99,8 @@ def preview_library() -> Path:
     """The planner's library with queues in place of link and core."""
     folders = (paths.planner, paths.gcode, paths.protocol, paths.driver, paths.grbl)
     link = ("passo_host.c", "passo_link_frame.c", "passo_link_retry.c")
-    own = [paths.engine / name for name in ("passo_preview.c", "passo_preview_core.c")]
+    names = ("passo_preview.c", "passo_preview_check.c", "passo_preview_core.c")
+    own = [paths.engine / name for name in names]
     files = [path for path in sources(*folders) if path.name not in link]
     return library("preview", [*folders, paths.engine], [*files, *own], "-O1", "-lm")
 
@@ -175,13 +182,14 @@ def _verilated(parameters: Parameters, waves: bool, rtl: Path) -> Path:
     if waves and not waves_possible():
         raise BuildError("waves need lz4.h and zlib.h: install the Debian packages liblz4-dev and zlib1g-dev")
     netlist = rtl.is_file()
-    modules = [rtl] if netlist else rtl_sources(rtl)
-    # More optimization takes longer than it saves, and the more so the more there is in one function.
+    modules = [*([rtl] if netlist else rtl_sources(rtl)), *([] if waves else [CLOCKED])]
+    # A second compilation takes longer than it saves, and the more so the more there is in one function.
     large = parameters.channels > 1 or parameters.encoders or parameters.outputs
-    optimize = ("OPT_FAST=-O1" if waves or large else "OPT_FAST=-O2", "OPT_SLOW=-O0", f"CXX={CXX_CORE}")
-    chosen = ["-Wno-fatal", "-Wno-lint", "-Wno-style"] if netlist else []
-    chosen += [f"-G{name}={value}" for name, value in parameters.verilog().items() if not netlist]
-    flags = [*_verilator_flags(waves, CXX_CORE), "--top-module", TOP, *chosen]
+    profiled = not (waves or large or netlist)
+    optimize = ("OPT_SLOW=-O0", f"CXX={CXX_CORE}")
+    chosen = ["-Wno-fatal", "-Wno-lint", "-Wno-style", "-DPASSO_NETLIST"] if netlist else []
+    chosen += [f"-G{name}={value}" for name, value in parameters.verilog().items()]
+    flags = [*_verilator_flags(waves, CXX_CORE), "--top-module", TOP if waves else CLOCKED.stem, *chosen]
 
     def make(folder: Path) -> None:
         if " " in f"{paths.rtl}{paths.build}":
@@ -189,10 +197,36 @@ def _verilated(parameters: Parameters, waves: bool, rtl: Path) -> Path:
                 f"Verilator's makefiles do not support a path with a space: {paths.rtl}, {paths.build}"
             )
         call(["verilator", *flags, f"-I{modules[0].parent}", "--Mdir", folder, *modules])
-        call(["make", "-C", folder, "-f", MAKEFILE, MODEL, *optimize])
+        profile = _profile(folder, optimize) if profiled else []
+        fast = " ".join([OPTIMIZED, *profile])
+        call(["make", "-C", folder, "-f", MAKEFILE, MODEL, f"OPT_FAST={fast}", *optimize])
 
     name = f"verilated_{parameters.name}{'_waves' if waves else ''}{_copy(rtl)}"
-    return cached(name, [*modules, *sorted(rtl.glob("*.vh"))], [_verilator(), *flags, *optimize], make)
+    inputs = [*modules, *sorted(rtl.glob("*.vh")), *([PROFILE] if profiled else [])]
+    return cached(name, inputs, [_verilator(), *flags, OPTIMIZED, *optimize], make)
+
+
+def _profile(folder: Path, optimize: Sequence[str]) -> list[str]:
+    """Compiler flags for the core that Verilator has made: the profile of a run; none without its tools."""
+    counts, merged, program = folder / "rest.profraw", folder / "rest.profdata", folder / "rest"
+    clang = CXX_CORE == "clang++"
+    counted = f"-fprofile-instr-generate={counts}" if clang else "-fprofile-generate"
+    include = Path(environment()["VERILATOR_ROOT"]) / "include"
+    headers_of = [f"-isystem{include}", f"-isystem{include / 'vltstd'}"]
+    flags = ["-std=gnu++17", *includes(folder, paths.core), *headers_of]
+    archives = [str(folder / MODEL), str(_runtime(False) / RUNTIME), "-pthread"]
+    try:
+        call(["make", "-C", folder, "-f", MAKEFILE, MODEL, f"OPT_FAST={OPTIMIZED} {counted}", *optimize])
+        call([CXX_CORE, counted, *flags, PROFILE, *archives, "-o", program])
+        call([program])
+        if clang:
+            call(["llvm-profdata", "merge", counts, "-o", merged])
+    except BuildError:
+        return []
+    finally:
+        for made in (*folder.glob("*.[ao]"), counts, program):
+            made.unlink(missing_ok=True)
+    return [f"-fprofile-instr-use={merged}"] if clang else ["-fprofile-use", "-Wno-missing-profile"]
 
 
 def _runtime(waves: bool) -> Path:

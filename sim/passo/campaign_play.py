@@ -37,8 +37,15 @@ class Outcome:
 Player = Callable[[Case, str], Outcome]
 
 
+@cache
+def _keep_modules() -> None:
+    """Once: the collector of garbage need not look again and again through what is loaded by now."""
+    gc.freeze()
+
+
 def play(case: Case, engine: str) -> Outcome:
     """Read the texts of the case as those of files, plan and play it; an exception is a fault, too."""
+    _keep_modules()
     table = table_text(case.table) if case.table else ""
 
     def read(path: Path) -> Points:
@@ -111,16 +118,9 @@ class Batch:
     cpu_seconds: float = 0  # of the process that played them
 
 
-@cache
-def _keep_modules() -> None:
-    """Once: the collector of garbage need not look again and again through what is loaded by now."""
-    gc.freeze()
-
-
 def play_batch(seed: int, first: int, count: int, engine: str, player: Player) -> Batch:
     """Draw and play the cases first .. first + count - 1."""
     batch, began = Batch(first, count), time.process_time()
-    _keep_modules()
     for number in range(first, first + count):
         outcome = player(draw(seed, number), engine)
         batch.counts += outcome.counts

@@ -16,7 +16,15 @@ NANOMETERS = 1_000_000
 
 
 def configure_inputs(driver: Driver, file: MachineFile) -> None:
-    """Filter, switches and probe; raises DriverError. A limit that is also a home is there in any case."""
+    """Filter, switches and probe. A limit that is also a home is there in any case.
+
+    Raises BadInputError if the core has no inputs, DriverError if a call fails.
+    """
+    if not driver.lib.passo_has_inputs(driver.c):
+        raise BadInputError(
+            f"{file.path}: its switches need inputs, the core has none: build it with INPUTS=1, "
+            "or leave switches, homes and probe out"
+        )
     inverted, stops = file.switches.inverted, file.switches.stop
     driver.call("configure_filter", round(file.switches.debounce * file.clock_hz))
     low, high, home = (file.mask(name) for name in ("limit_low", "limit_high", "home"))

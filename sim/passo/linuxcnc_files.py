@@ -108,6 +108,7 @@ def _hal(machine: MachineFile) -> Iterator[str]:
     has_spindle = machine.gcode.spindle_maximum > 0
     encoders = sorted({*machine.encoders, *([motors] if machine.spindle else [])})
     given = f" encoders={','.join(map(str, encoders))}" if encoders else ""
+    given += "" if machine.has_inputs else " watchdog_ms=0"
     yield f"# {machine.path.name} behind LinuxCNC; docs/hosts.md"
     yield "loadrt [KINS]KINEMATICS"
     yield "loadrt [EMCMOT]EMCMOT servo_period_nsec=[EMCMOT]SERVO_PERIOD num_joints=[KINS]JOINTS"

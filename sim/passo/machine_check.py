@@ -24,7 +24,7 @@ from passo.failure import BadInputError, Failure
 from passo.grbl import Grbl
 from passo.grbl_setup import core_for
 from passo.machine_file import MachineFile, read_machine
-from passo.make_command import at_home, core_of
+from passo.make_command import core_of, wired
 from passo.run import open_engine
 
 RESET, REPORT = b"\x18", b"?"
@@ -138,7 +138,7 @@ def build_of(machine: MachineFile) -> int:
         return 0
     chosen = board(machine.board)
     with TemporaryDirectory() as folder:
-        design, _ = generate(chosen, Path(folder), *core_of(machine), more=at_home(machine, chosen))
+        design, _ = generate(chosen, Path(folder), *core_of(machine), more=wired(machine, chosen))
     return int(design.parameters["BUILD"])
 
 

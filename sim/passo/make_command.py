@@ -189,7 +189,7 @@ def _bitstream(machine: MachineFile, chosen: Board, path: Path) -> Iterator[str]
     tell = stages()
     bitstream = path.with_suffix(f".{chosen.device.family.suffix}")
     try:
-        made = synth.make(chosen, *core_of(machine), bitstream.resolve(), tell, at_home(machine, chosen))
+        made = synth.make(chosen, *core_of(machine), bitstream.resolve(), tell, wired(machine, chosen))
     except ToolError as error:
         raise Failure(str(error)) from None
     if not made:
@@ -236,8 +236,8 @@ def _wires(machine: MachineFile, chosen: Board, host: dict[str, str]) -> Iterato
 
 
 def _unused(name: str) -> str:
-    """An input that floats keeps the inputs unknown: no motion begins."""
-    return "ground" if name in INPUT_NAMES else "not connected"
+    """An input that floats keeps the inputs unknown: no motion begins. Encoders need no wire."""
+    return "ground" if name in INPUT_NAMES and name not in ENCODER_PORTS else "not connected"
 
 
 def _end(machine: MachineFile, chosen: Board, host: dict[str, str], name: str, index: int) -> str:
@@ -298,9 +298,13 @@ def core_of(machine: MachineFile) -> tuple[int, float, tuple[str, ...]]:
     return machine.core_axes, machine.clock_hz / 1e6, machine.parts
 
 
-def at_home(machine: MachineFile, chosen: Board) -> dict[str, int]:
-    """Parameters of the board for limits that share a pin."""
-    return chosen.limits_at_home(machine.mask("limit_low"), machine.mask("limit_high"))
+def wired(machine: MachineFile, chosen: Board) -> dict[str, int]:
+    """Parameters of the board for limits that share a pin, and for the encoders that there are."""
+    parameters = chosen.limits_at_home(machine.mask("limit_low"), machine.mask("limit_high"))
+    if "encoders" in machine.parts:
+        there = [*machine.encoders, *([len(machine.motors)] if machine.spindle else [])]
+        parameters["ENCODER_WIRED"] = sum(1 << axis for axis in there)
+    return parameters
 
 
 def definitions(machine: MachineFile) -> dict[str, Any]:

@@ -6,10 +6,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from passo.driver import Driver, DriverError, Source
+from passo.engine import EVENT
 from passo.moves import MoveFile
 from passo.plan import Plan
 
 SOON = 1 << 16  # clocks: some tens of frames
+ENOUGH = 1 << 16  # events: rows of the core take six times as much memory as those of one channel
 SLEWS_PER_SECOND = 20  # of hold and stop, from full speed
 # The pins of one channel that change during a motion.
 PINS = np.dtype([("clock", "u8"), ("step", "u1"), ("dir", "u1"), ("running", "?")])
@@ -23,7 +25,8 @@ class MovingChannel:
     plans: list[Plan]
     driver: Driver
     source: Source = field(init=False)
-    parts: list[np.ndarray] = field(default_factory=list)  # of its pins
+    events: list[np.ndarray] = field(default_factory=list)  # of the core, at most ENOUGH before the last
+    parts: list[np.ndarray] = field(default_factory=list)  # of its pins, before these
     moves: bool = True
 
     def __post_init__(self) -> None:
@@ -45,8 +48,15 @@ class MovingChannel:
 
     def collect(self, events: np.ndarray) -> None:
         """Store its part of the pin events."""
-        if not len(events):
-            return
+        if len(events):
+            self.events.append(events)
+        if sum(map(len, self.events)) > ENOUGH:
+            self._compact()
+
+    def _compact(self) -> None:
+        """Keep only what is its own of the events so far."""
+        # as bytes: to join records, numpy looks at each of their fields
+        events = np.concatenate([part.view(np.uint8) for part in self.events]).view(EVENT)
         pins = self.driver.engine.parameters.axes
         compact = np.empty(len(events), PINS)
         compact["clock"] = events["clock"]
@@ -54,11 +64,13 @@ class MovingChannel:
             compact[name] = events[name] >> np.uint64(self.file.channel * pins) & np.uint64((1 << pins) - 1)
         compact["running"] = events["running"] >> np.uint32(self.file.channel) & np.uint32(1)
         self.parts.append(compact)
+        self.events.clear()
 
     @property
     def pins(self) -> np.ndarray:
         """The pins (PINS) at all events so far."""
-        # as bytes: to join records, numpy looks at each of their fields
+        if self.events:
+            self._compact()
         return np.concatenate([part.view(np.uint8) for part in self.parts]).view(PINS)
 
     def poll(self) -> None:

@@ -39,6 +39,7 @@ HEADERS = (
     paths.driver / "passo_follow.h",
     paths.driver / "passo_outputs.h",
     paths.driver / "passo_encoder.h",
+    paths.driver / "passo_track.h",
     paths.linux / "passo_linux.h",
     paths.linux / "passo_servo.h",
     paths.grbl / "passo_player.h",

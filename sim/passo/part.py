@@ -176,7 +176,7 @@ def read_part(
     begin = _begin(gcode, machine)
     whole, places, refused, chords, unread = [], [], [], 0, 0
     for file in files:
-        text, where = _read(file, machine, tools or {}, surface)
+        text, where = _read(file, machine, tools or {}, surface, gcode)
         if only:
             before, text, where = _split(file, text, where, only)
             checked = check_lines(before, gcode)
@@ -199,19 +199,17 @@ def read_part(
 
 
 def _read(
-    path: Path, machine: MachineFile, tools: dict[int, Tool], surface: HeightMap | None
+    path: Path, machine: MachineFile, tools: dict[int, Tool], surface: HeightMap | None, begin: Any
 ) -> tuple[list[bytes], list[Place]]:
-    """The lines of a file and their places."""
+    """The lines of a file and their places; `begin`: the `struct passo_gcode` before them."""
     try:
         data = sys.stdin.buffer.read() if path == STANDARD_INPUT else path.read_bytes()
     except OSError as error:
         raise BadInputError(f"{path}: {error.strerror}") from None
     name = STDIN if path == STANDARD_INPUT else path
     text = lines(data)
-    if surface and (missing := next((axis for axis in "XYZ" if axis not in machine.letters), "")):
-        raise BadInputError(f"{name}: the machine has no axis {missing} to probe a surface")
     if surface or needs_expanding(data):
-        options = Options(machine.gcode, tools, at_zero=True, surface=surface)
+        options = Options(machine.gcode, tools, at_zero=True, surface=surface, begin=begin)
         expanded = expand_file(name, options, _say, data)
         text, places = [f"{line.text}\n".encode() for line in expanded], [line.place for line in expanded]
     else:

@@ -24,6 +24,8 @@ class CoreParameters:
     encoders: int = 0
     # OUTPUTS, 0 or 1: outputs bound to the path
     outputs: int = 0
+    # TRACKERS, 0 or 1: a second hand on every axis
+    trackers: int = 0
     # CLOCK_HZ, what the host reads as the clock, in Hz; 0: not told
     clock_hz: int = 0
     # BUILD, what the host reads as the identifier of the bitstream

@@ -121,7 +121,9 @@ def struct_of(move: Move, clock_hz: int) -> Any:
 
 def _number(key: Key, value: Fraction, clock_hz: int) -> int:
     """A value in the units of the struct, rounded to nearest; alpha saturates at 32 bits."""
-    number = round(value * (clock_hz if key.factor == "clock_hz" else key.factor))
+    factor, whole = clock_hz if key.factor == "clock_hz" else key.factor, value.denominator
+    number, rest = divmod(value.numerator * factor, whole)  # as round() of a fraction, in half the time
+    number += 2 * rest > whole or (2 * rest == whole and number & 1)
     return min(number, WHOLE_MAX) if key.kind == "alpha" else number
 
 

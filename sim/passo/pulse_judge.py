@@ -114,10 +114,13 @@ def expected(plan: Plan) -> Curve:
     """
     velocities, velocity, told = [np.empty(0)], 0.0, told_of(plan)
     for ramp in plan.ramps:
-        end, u = ramp.velocity_end / Q48, (np.arange(ramp.ticks) + 0.5) / max(ramp.ticks, 1)
-        points = _points(ramp.shape, *told)
-        s = np.interp(1 - u if ramp.mirror else u, GRID, points)
-        velocities.append(velocity + (end - velocity) * (1 - s if ramp.mirror else s))
+        end = ramp.velocity_end / Q48
+        if end == velocity:
+            velocities.append(np.full(ramp.ticks, end))
+        elif ramp.ticks:
+            u = (np.arange(ramp.ticks) + 0.5) / ramp.ticks
+            s = np.interp(1 - u if ramp.mirror else u, GRID, _points(ramp.shape, *told))
+            velocities.append(velocity + (end - velocity) * (1 - s if ramp.mirror else s))
         velocity = end
     tick, peak = 1 << plan.tick_log2, plan.c.velocity_peak / Q48
     distance = np.concatenate([[0], np.cumsum(np.concatenate(velocities))]) * tick

@@ -173,6 +173,7 @@ class ParametersWord(Word):
     inputs: bool = bits(29, 1, "r")  # INPUTS.
     ramp_queue_log2: int = bits(24, 5, "r")  # RAMP_QUEUE_LOG2.
     line_queue_log2: int = bits(16, 5, "r")  # LINE_QUEUE_LOG2.
+    trackers: bool = bits(15, 1, "r")  # TRACKERS.
     tick_log2: int = bits(8, 5, "r")  # TICK_LOG2.
     axes: int = bits(4, 4, "r")  # AXES per channel.
     channels: int = bits(0, 4, "r")  # CHANNELS.
@@ -346,6 +347,15 @@ class ChannelFollowStateWord(Word):
 
 
 @dataclass(frozen=True)
+class ChannelTrackerStateWord(Word):
+    """Tracker state."""
+
+    at_target: int = bits(16, 8, "r")  # It is at its target.
+    moves: int = bits(8, 8, "r", 0)  # It moves.
+    enabled: int = bits(0, 8, "r", 0)  # The tracker is enabled.
+
+
+@dataclass(frozen=True)
 class AxisPinsWord(Word):
     """Pins."""
 
@@ -516,6 +526,8 @@ PARAMETERS_AXES_LSB = 4
 PARAMETERS_AXES_BITS = 4
 PARAMETERS_TICK_LOG2_LSB = 8
 PARAMETERS_TICK_LOG2_BITS = 5
+PARAMETERS_TRACKERS_LSB = 15
+PARAMETERS_TRACKERS_BITS = 1
 PARAMETERS_LINE_QUEUE_LOG2_LSB = 16
 PARAMETERS_LINE_QUEUE_LOG2_BITS = 5
 PARAMETERS_RAMP_QUEUE_LOG2_LSB = 24
@@ -985,6 +997,51 @@ CHANNEL_FOLLOW_STATE_LOST_LSB = 25
 CHANNEL_FOLLOW_STATE_LOST_BITS = 1
 CHANNEL_FOLLOW_STATE_LOST_RESET = 0x0
 
+# Channel: Tracker enable. One bit per axis. A stop of any cause and ZERO clear them; bits of axes that the
+# core lacks do nothing.
+CHANNEL_TRACKER_ENABLE = 0x64
+CHANNEL_TRACKER_ENABLE_ENABLE_LSB = 0
+CHANNEL_TRACKER_ENABLE_ENABLE_BITS = 8
+CHANNEL_TRACKER_ENABLE_ENABLE_RESET = 0x00
+CHANNEL_TRACKER_ENABLE_DEFINED = 0x000000FF
+
+# Channel: Tracker state. One bit per axis.
+CHANNEL_TRACKER_STATE = 0x65
+CHANNEL_TRACKER_STATE_ENABLED_LSB = 0
+CHANNEL_TRACKER_STATE_ENABLED_BITS = 8
+CHANNEL_TRACKER_STATE_ENABLED_RESET = 0x00
+CHANNEL_TRACKER_STATE_MOVES_LSB = 8
+CHANNEL_TRACKER_STATE_MOVES_BITS = 8
+CHANNEL_TRACKER_STATE_MOVES_RESET = 0x00
+CHANNEL_TRACKER_STATE_AT_TARGET_LSB = 16
+CHANNEL_TRACKER_STATE_AT_TARGET_BITS = 8
+
+# Channel: Tracker position. Steps of an axis that are due to its tracker, rounded down while it moves;
+# wraps. A hard stop may drop up to 7 of them.
+CHANNEL_TRACKER_POSITION_BASE = 0x68
+CHANNEL_TRACKER_POSITION_COUNT = 8
+CHANNEL_TRACKER_POSITION_POSITION_LSB = 0
+CHANNEL_TRACKER_POSITION_POSITION_BITS = 32
+CHANNEL_TRACKER_POSITION_POSITION_RESET = 0x00000000
+
+# Channel: Tracker target. Where the tracker of an axis goes: the first array while the last line that
+# moved the axis went up, or none did, the second one while it went down. Their difference is the backlash.
+CHANNEL_TRACKER_TARGET_BASE = 0x70
+CHANNEL_TRACKER_TARGET_COUNT = 8
+CHANNEL_TRACKER_TARGET_TARGET_LSB = 0
+CHANNEL_TRACKER_TARGET_TARGET_BITS = 32
+CHANNEL_TRACKER_TARGET_TARGET_RESET = 0x00000000
+CHANNEL_TRACKER_TARGET_DEFINED = 0xFFFFFFFF
+
+# Channel: Tracker target. Where the tracker of an axis goes: the first array while the last line that
+# moved the axis went up, or none did, the second one while it went down. Their difference is the backlash.
+CHANNEL_TRACKER_TARGET_DOWN_BASE = 0x78
+CHANNEL_TRACKER_TARGET_DOWN_COUNT = 8
+CHANNEL_TRACKER_TARGET_DOWN_TARGET_LSB = 0
+CHANNEL_TRACKER_TARGET_DOWN_TARGET_BITS = 32
+CHANNEL_TRACKER_TARGET_DOWN_TARGET_RESET = 0x00000000
+CHANNEL_TRACKER_TARGET_DOWN_DEFINED = 0xFFFFFFFF
+
 # Channel: where each axis has its registers.
 CHANNEL_AXIS_BASE = 0x80
 CHANNEL_AXIS_COUNT = 8
@@ -1069,6 +1126,20 @@ AXIS_INPUTS_ALARM_DISABLES_LSB = 6
 AXIS_INPUTS_ALARM_DISABLES_BITS = 1
 AXIS_INPUTS_ALARM_DISABLES_RESET = 0x0
 AXIS_INPUTS_DEFINED = 0x0000007F
+
+# Axis: Speed of the tracker. The tracker moves no faster. Below its acceleration it does not move.
+AXIS_TRACKER_SPEED = 0x6
+AXIS_TRACKER_SPEED_SPEED_LSB = 0
+AXIS_TRACKER_SPEED_SPEED_BITS = 32
+AXIS_TRACKER_SPEED_SPEED_RESET = 0x00000000
+AXIS_TRACKER_SPEED_DEFINED = 0xFFFFFFFF
+
+# Axis: Acceleration of the tracker. Greatest change of its speed from one tick to the next.
+AXIS_TRACKER_ACCELERATION = 0x7
+AXIS_TRACKER_ACCELERATION_ACCELERATION_LSB = 0
+AXIS_TRACKER_ACCELERATION_ACCELERATION_BITS = 32
+AXIS_TRACKER_ACCELERATION_ACCELERATION_RESET = 0x00000000
+AXIS_TRACKER_ACCELERATION_DEFINED = 0xFFFFFFFF
 
 # Encoder: Encoder setup. How the encoder counts, and what a following error does.
 ENCODER_SETUP = 0x0
@@ -1183,12 +1254,19 @@ TABLE = (
     Register("CHANNEL_FOLLOW_LIMIT", "CHANNEL", 0x61, 1, (Field("LIMIT", 0, 32, "w", 0x01000000),), "encoders"),
     Register("CHANNEL_ENCODER_FILTER", "CHANNEL", 0x62, 1, (Field("FILTER", 0, 8, "w", 0x03),), "encoders"),
     Register("CHANNEL_FOLLOW_STATE", "CHANNEL", 0x63, 1, ChannelFollowStateWord.places(), "encoders"),
+    Register("CHANNEL_TRACKER_ENABLE", "CHANNEL", 0x64, 1, (Field("ENABLE", 0, 8, "w", 0x00),), "trackers"),
+    Register("CHANNEL_TRACKER_STATE", "CHANNEL", 0x65, 1, ChannelTrackerStateWord.places(), "trackers"),
+    Register("CHANNEL_TRACKER_POSITION", "CHANNEL", 0x68, 8, (Field("POSITION", 0, 32, "r", 0x00000000),), "trackers"),
+    Register("CHANNEL_TRACKER_TARGET", "CHANNEL", 0x70, 8, (Field("TARGET", 0, 32, "w", 0x00000000),), "trackers"),
+    Register("CHANNEL_TRACKER_TARGET_DOWN", "CHANNEL", 0x78, 8, (Field("TARGET", 0, 32, "w", 0x00000000),), "trackers"),
     Register("AXIS_PINS", "AXIS", 0x0, 1, AxisPinsWord.places()),
     Register("AXIS_STEP_TIMING", "AXIS", 0x1, 1, AxisStepTimingWord.places()),
     Register("AXIS_DIR_TIMING", "AXIS", 0x2, 1, AxisDirTimingWord.places()),
     Register("AXIS_LOST_STEPS", "AXIS", 0x3, 1, (Field("LOST", 0, 4, "r", 0x0),)),
     Register("AXIS_ENABLE", "AXIS", 0x4, 1, (Field("ENABLE", 0, 1, "w", 0x0),)),
     Register("AXIS_INPUTS", "AXIS", 0x5, 1, AxisInputsWord.places(), "inputs"),
+    Register("AXIS_TRACKER_SPEED", "AXIS", 0x6, 1, (Field("SPEED", 0, 32, "w", 0x00000000),), "trackers"),
+    Register("AXIS_TRACKER_ACCELERATION", "AXIS", 0x7, 1, (Field("ACCELERATION", 0, 32, "w", 0x00000000),), "trackers"),
     Register("ENCODER_SETUP", "ENCODER", 0x0, 1, EncoderSetupWord.places(), "encoders"),
     Register("ENCODER_RATIO", "ENCODER", 0x1, 1, (Field("RATIO", 0, 32, "w", 0x00010000),), "encoders"),
     Register("ENCODER_LIMIT", "ENCODER", 0x2, 1, (Field("LIMIT", 0, 16, "w", 0xFFFF),), "encoders"),

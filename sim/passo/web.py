@@ -32,6 +32,7 @@ GRBL = (
 )
 OWN = (
     "engine_model.c",
+    "passo_preview_check.c",
     "passo_rests.c",
     "passo_terminal.c",
     "passo_web.c",
@@ -39,7 +40,7 @@ OWN = (
     "passo_web_program.c",
 )
 MACHINE = ("toml.js", "values.js", "machine_file.js")  # reads machine files
-WEB = ("runner.js", "share.js", "save.js", *MACHINE, "advice.js", "web.js")
+WEB = ("runner.js", "share.js", "save.js", *MACHINE, "advice.js", "files.js", "web.js")
 WORKER = ("bytes.js", "motion.js", "advice.js", "expand.js", "worker.js")
 EXAMPLE = paths.root / "examples" / "gcode"
 # The warnings are those of GCC, which compiles the same sources elsewhere: Clang has others.

@@ -76,8 +76,14 @@ def moves(schema: Schema) -> str:
     lines = ['#include "passo_command.h"']
     rows = [f'{name.upper()}, PASSO_SHAPE_{s.upper()}, "{name}"' for name, s in schema.profiles.items()]
     lines += _list("PASSO_PROFILES", "X macro of the profiles: EACH(NAME, shape of the core, name).", rows)
-    lines += ["", "enum passo_profile {", *(f"\tPASSO_PROFILE_{name.upper()}," for name in names)]
-    lines += ["\tPASSO_PROFILE_COUNT", "};", "", f'#define PASSO_PROFILES_WORDS "{several}"']
+    lines += [
+        "",
+        "/* Shapes of the ramps of a move. */",
+        "enum passo_profile {",
+        *(f"\tPASSO_PROFILE_{name.upper()}," for name in names),
+    ]
+    lines += ["\tPASSO_PROFILE_COUNT", "};", "", "/* Their names, for messages. */"]
+    lines.append(f'#define PASSO_PROFILES_WORDS "{several}"')
     lines.append(f'#define PASSO_PROFILES_CHOICE "{"|".join(names)}"')
     lines += [
         "",

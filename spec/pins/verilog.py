@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Pins in Verilog: their recorder and player."""
+"""Pins in Verilog: their recorder and player, and the core with a clock."""
 
 from collections.abc import Sequence
 
 from pins.schema import GENERATED, Pin, Source
+
+NEXT = "\n  "
+WORD = 32  # bits of a parameter that is not an integer
 
 
 def concatenated(pins: Sequence[str]) -> str:
@@ -44,6 +47,82 @@ always @(posedge clk) begin
     end
   end
 end
+"""
+
+
+def engine(source: Source) -> str:
+    """The core with a clock of its own."""
+    inputs, outputs = source.inputs, source.outputs
+    names = [parameter.name.upper() for parameter in source.parameters]
+    levels = [level.upper() for level in source.levels]
+    parameters = [
+        *(
+            f"parameter integer {parameter.name.upper()} = {parameter.default}"
+            if parameter.bits < WORD
+            else f"parameter [{parameter.bits - 1}:0] {parameter.name.upper()} = {parameter.default}"
+            for parameter in source.parameters
+        ),
+        *(f"parameter [CHANNELS*AXES-1:0] {level} = 0" for level in levels),
+    ]
+    ports = [
+        *(f"input wire {pin.verilog}" for pin in inputs),
+        *(f"output wire {pin.verilog}" for pin in (*outputs, Pin("spi_miso"))),
+        "input wire go",
+        "input wire [15:0] limit",
+        "output reg [15:0] clocks",
+    ]
+    pins = ["clk", *(pin.name for pin in inputs), *(pin.name for pin in outputs), "spi_miso"]
+    return f"""\
+// SPDX-License-Identifier: MIT
+// The core with a clock of its own. {GENERATED}
+//
+// A change of `go` runs clocks: up to `limit`, at least 1, ending with the first on which an output other
+// than MISO is not as it was after the clock before. Then `clocks` is their number, and clk is low. They are
+// one evaluation of a simulator: each evaluation costs time of its own.
+`resetall
+`timescale 1ns / 1ps
+`default_nettype none
+
+module passo_engine #(
+  {f",{NEXT}".join(parameters)}
+) (
+  {f",{NEXT}".join(ports)}
+);
+
+  localparam PINS = {" + ".join(pin.width for pin in outputs)};
+
+  reg             clk = 1'b0;
+  reg             went = 1'b0;
+  reg  [PINS-1:0] pins_before = {{PINS{{1'b0}}}};
+  wire [PINS-1:0] pins = {{{", ".join(pin.name for pin in outputs)}}};
+
+  always @(posedge go or negedge go or posedge clk or negedge clk) begin
+    if (clk) begin
+      clk    <= 1'b0;
+      clocks <= clocks + 16'd1;
+    end else if (went != go) begin
+      clk    <= 1'b1;
+      went   <= go;
+      clocks <= 16'd0;
+    end else begin
+      clk         <= clocks != limit && pins == pins_before;
+      pins_before <= pins;
+    end
+  end
+
+`ifdef PASSO_NETLIST
+  passo_spi_top u_core (
+`else
+  passo_spi_top #(
+    {f",{NEXT}  ".join(f".{name}({name})" for name in (*names, *levels))}
+  ) u_core (
+`endif
+    .spi_miso_enable(),
+    {f",{NEXT}  ".join(f".{name}({name})" for name in pins)}
+  );
+
+endmodule
+`resetall
 """
 
 

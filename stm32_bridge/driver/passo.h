@@ -222,16 +222,16 @@ struct passo {
 	enum passo_post post;
 	enum passo_error posted; /* result of the posted frame */
 	struct passo_axis_memory axis[PASSO_AXES_MAX];
-	struct passo_snapshot snapshot;             /* its free entries are a lower bound */
-	uint32_t looked_at;                         /* microseconds: time of the last status read */
-	uint32_t rate_target;                       /* UQ1.16: the override, kept during a hold */
-	uint32_t oversampling;                      /* of the last plan */
-	uint64_t velocity_peak;                     /* of the last plan */
-	uint64_t velocity_top;                      /* highest peak of the plans of this motion */
-	bool has_inputs, has_outputs, has_encoders; /* the core has */
-	bool follows;                               /* motions may be clocked by an encoder */
-	uint8_t spindle;                            /* its axis */
-	bool stop_time_known;                       /* the soft-stop time is configured */
+	struct passo_snapshot snapshot; /* its free entries are a lower bound */
+	uint32_t looked_at;             /* microseconds: time of the last status read */
+	uint32_t rate_target;           /* UQ1.16: the override, kept during a hold */
+	uint32_t oversampling;          /* of the last plan */
+	uint64_t velocity_peak;         /* of the last plan */
+	uint64_t velocity_top;          /* highest peak of the plans of this motion */
+	bool has_inputs, has_outputs, has_encoders, has_trackers; /* the core has */
+	bool follows;                                             /* motions may be clocked by an encoder */
+	uint8_t spindle;                                          /* its axis */
+	bool stop_time_known;                                     /* the soft-stop time is configured */
 	uint32_t reference;         /* power reference, UQ0.32 substeps per clock; 0: unknown */
 	struct passo_output output; /* of moves queued from now on */
 	bool probe_fitted;          /* the probe is configured */
@@ -382,13 +382,13 @@ bool passo_is_streaming(const struct passo *passo);
 
 /* --------------------------------------------------------------------------------------- main loop ---- */
 
-/* Call it often: feeds the stream or reads the state with at most one frame; an idle driver reads the state
- * every millisecond. Errors are returned once, by the first call that detects them (CORE_RESET by every
- * call), and kept for passo_fault(): LINE_UNDERRUN, RAMP_UNDERRUN, STEP_OVERRUN, POSITION, SUPPLY, LIMIT,
- * ALARM, TRIGGER, WATCHDOG, ESTOP, FOLLOWING, INPUTS_UNKNOWN, link errors, those of passo_home() and
- * passo_probe(), which it advances. A stream that fails on the host's side is stopped with a soft stop.
- * Commands that were not acknowledged have priority: until a stop or hold gets through, nothing else is sent,
- * and NOT_STOPPED or NOT_HELD is returned once every `tries` polls. */
+/* Call it often: feeds the stream or reads the state with at most one frame, two with trackers; an idle
+ * driver reads the state every millisecond. Errors are returned once, by the first call that detects them
+ * (CORE_RESET by every call), and kept for passo_fault(): LINE_UNDERRUN, RAMP_UNDERRUN, STEP_OVERRUN,
+ * POSITION, SUPPLY, LIMIT, ALARM, TRIGGER, WATCHDOG, ESTOP, FOLLOWING, INPUTS_UNKNOWN, link errors, those of
+ * passo_home() and passo_probe(), which it advances. A stream that fails on the host's side is stopped with a
+ * soft stop. Commands that were not acknowledged have priority: until a stop or hold gets through, nothing
+ * else is sent, and NOT_STOPPED or NOT_HELD is returned once every `tries` polls. */
 enum passo_error passo_poll(struct passo *passo);
 /* Microseconds until passo_poll() has something to do. No frame. */
 uint32_t passo_idle_time(const struct passo *passo);

@@ -8,6 +8,7 @@
 #include "passo_goto.h"
 #include "passo_home.h"
 #include "passo_outputs.h"
+#include "passo_track.h"
 #include "passo_words.h"
 
 /* ARGUMENT for null, NOT_OPEN for a channel that is not open. */
@@ -44,7 +45,9 @@ enum passo_error passo_driver_look(struct passo *passo, bool once);
 enum passo_error passo_driver_look_at_rest(struct passo *passo);
 /* MOVING unless two reads in a row find the channel at rest, or stopped with all steps made. */
 enum passo_error passo_driver_require_rest(struct passo *passo);
-/* Reads the positions of the core, without the offsets. */
+/* Slows down trackers, a bit per axis: they rest until they are enabled again. OK of a core without. */
+enum passo_error passo_driver_untrack(struct passo *passo, uint8_t axes);
+/* Reads the positions of the core that are due to the path, without the offsets. */
 enum passo_error passo_driver_positions(struct passo *passo, int32_t *positions, bool once);
 /* A position of the core as the program counts it. */
 int32_t passo_driver_offset(const struct passo *passo, unsigned axis, int32_t position);

@@ -10,9 +10,9 @@
 #include "passo_registers.h"
 #include "passo_strings.h"
 
-/* X(name, text) in the order of the codes; G and P are those of calls that PASSO_WITHOUT_GOTO and
- * PASSO_WITHOUT_PARTS leave out. */
-#define ERRORS(X, G, P)                                                                                      \
+/* X(name, text) in the order of the codes; G, P and T are those of calls that PASSO_WITHOUT_GOTO,
+ * PASSO_WITHOUT_PARTS and PASSO_WITHOUT_TRACKERS leave out. */
+#define ERRORS(X, G, P, T)                                                                                   \
 	X(NOT_OPEN, "the core is not open; the error of passo_open() says why")                              \
 	X(UNITS, "the axis has no steps per unit, or the position overflows")                                \
 	X(TIMEOUT, "timeout; the motion continues")                                                          \
@@ -72,6 +72,8 @@
 	P(NO_COUNTS, "a thread needs at least one encoder count")                                            \
 	P(STEEP, "a thread must have at most 64 steps per count")                                            \
 	P(FOLLOW_SPEED, "the encoder's top speed is 0 or too high")                                          \
+	T(NO_TRACKERS, "the core was built without trackers")                                                \
+	T(TRACKER_LIMITS, "a tracker's acceleration is too small or its speed out of range")                 \
 	X(LINE_UNDERRUN, "stopped: a line ended and none was queued")                                        \
 	X(RAMP_UNDERRUN, "stopped: ran out of ramps at speed")                                               \
 	X(STEP_OVERRUN, "stopped: steps came faster than the pin timing allows")                             \
@@ -106,23 +108,28 @@
 #else
 #define OF_PARTS(part) part
 #endif
+#ifdef PASSO_WITHOUT_TRACKERS
+#define OF_TRACKERS(part) LEFT_OUT
+#else
+#define OF_TRACKERS(part) part
+#endif
 
-static const char error_names[] =
-    "OK\0PENDING\0" ERRORS(PASSO_STRING_NAME, OF_GOTO(PASSO_STRING_NAME), OF_PARTS(PASSO_STRING_NAME));
-static const char error_texts[] = "no error\0the frame is still in flight\0" ERRORS(
-    PASSO_STRING_TEXT, OF_GOTO(PASSO_STRING_TEXT), OF_PARTS(PASSO_STRING_TEXT));
+static const char error_names[] = "OK\0PENDING\0" ERRORS(PASSO_STRING_NAME, OF_GOTO(PASSO_STRING_NAME),
+    OF_PARTS(PASSO_STRING_NAME), OF_TRACKERS(PASSO_STRING_NAME));
+static const char error_texts[] = "no error\0the frame is still in flight\0" ERRORS(PASSO_STRING_TEXT,
+    OF_GOTO(PASSO_STRING_TEXT), OF_PARTS(PASSO_STRING_TEXT), OF_TRACKERS(PASSO_STRING_TEXT));
 static const char refusal_names[] = REFUSALS(PASSO_STRING_NAME);
 static const char refusal_texts[] = REFUSALS(PASSO_STRING_TEXT);
 
 struct errors {
 	char OK, PENDING;
-	ERRORS(PASSO_STRING_PLACE, PASSO_STRING_PLACE, PASSO_STRING_PLACE)
+	ERRORS(PASSO_STRING_PLACE, PASSO_STRING_PLACE, PASSO_STRING_PLACE, PASSO_STRING_PLACE)
 };
 struct refusals {
 	REFUSALS(PASSO_STRING_PLACE)
 };
 #define IN_ORDER(name, text) _Static_assert(offsetof(struct errors, name) == PASSO_ERROR_##name, #name);
-ERRORS(IN_ORDER, IN_ORDER, IN_ORDER)
+ERRORS(IN_ORDER, IN_ORDER, IN_ORDER, IN_ORDER)
 #define REFUSAL_IN_ORDER(name, text)                                                                         \
 	_Static_assert(offsetof(struct refusals, name) == PASSO_VERDICT_##name - FIRST_REFUSAL, #name);
 REFUSALS(REFUSAL_IN_ORDER)

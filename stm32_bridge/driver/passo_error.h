@@ -86,6 +86,11 @@ enum passo_error {
 	PASSO_ERROR_STEEP,           /* a thread with more than 64 steps per count */
 	PASSO_ERROR_FOLLOW_SPEED,    /* top speed of the encoder: 0, or above half a clock per clock */
 
+	/* trackers */
+	PASSO_ERROR_NO_TRACKERS,    /* the core was built without trackers */
+	PASSO_ERROR_TRACKER_LIMITS, /* acceleration 0 or too small, or not below a speed below a step per tick
+	                             */
+
 	/* how a motion ended */
 	PASSO_ERROR_LINE_UNDERRUN, /* stopped: a line ended and no other was queued */
 	PASSO_ERROR_RAMP_UNDERRUN, /* soft stop: the ramp queue ran empty at speed */

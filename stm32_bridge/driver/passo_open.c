@@ -78,6 +78,7 @@ static enum passo_error identify(struct passo *passo, const struct passo_options
 	passo->has_inputs = core.inputs;
 	passo->has_outputs = core.outputs;
 	passo->has_encoders = passo->follows = core.encoders;
+	passo->has_trackers = core.trackers;
 	passo->host->channels = core.channels;
 	*run = words[3];
 	return agree_on_clock(passo);
@@ -99,12 +100,14 @@ static bool is_kept_stopped(enum passo_error error)
 	return error == PASSO_ERROR_ESTOP || error == PASSO_ERROR_ALARM;
 }
 
-/* A motion of a previous connection that is queued, prepared or waiting for an edge must not start. A soft
- * stop flushes it immediately, or stops it if it has just started. */
+/* Trackers of a previous connection slow down; its motion that is queued, prepared or waiting for an edge
+ * must not start. A soft stop flushes it immediately, or stops it if it has just started. */
 static enum passo_error keep_from_beginning(struct passo *passo)
 {
-	enum passo_error error = passo_driver_look_at_rest(passo);
+	enum passo_error error = passo_driver_untrack(passo, 0xFFu);
 
+	if (error == PASSO_OK)
+		error = passo_driver_look_at_rest(passo);
 	if (error != PASSO_OK || passo->snapshot.state > PASSO_STATE_ARMED || passo_driver_at_rest(passo))
 		return error;
 	error = passo_driver_command(passo, (struct passo_channel_command){.stop = true});

@@ -22,7 +22,7 @@ extern "C" {
 #include "passo.h"
 #include "passo_path.h"
 
-#define PASSO_PATH_FEED_RAMPS 32u
+#define PASSO_PATH_FEED_RAMPS 32u /* that are remembered */
 
 /* All members are private. */
 struct passo_path_feed {
@@ -42,6 +42,8 @@ struct passo_path_feed {
 	bool gave;                             /* the last poll sent lines or ramps */
 };
 
+/* Connects a path to an open channel; the planner learns how fast it can be sent. All three must stay valid.
+ * No frame. */
 void passo_path_feed_open(struct passo_path_feed *feed, struct passo *passo, struct passo_path_planner *path);
 
 /* Calls passo_poll() and starts motions. A motion starts when the look-ahead is full, when the path has been

@@ -17,6 +17,7 @@ extern "C" {
 /* Not defined anywhere. */
 uint64_t passo_unit_is_not_a_constant(void);
 
+/* Used by the macros below. */
 #ifdef __GNUC__
 #define PASSO_UNIT_CONSTANT(x, type, value)                                                                  \
 	(__builtin_constant_p(x) ? (type)(value) : (type)passo_unit_is_not_a_constant())

@@ -16,7 +16,7 @@ from passo.pins import INPUTS
 from passo.toolchain import paths
 
 HERE = Path(__file__).parent
-MODEL = ("pins", "shift", "core_encoder", "core_outputs", "model", "core")
+MODEL = ("pins", "shift", "core_encoder", "core_outputs", "core_trackers", "model", "core")
 HEADERS = [
     *(paths.protocol / f"passo_{name}.h" for name in ("registers", "words", "shapes", "command")),
     *(paths.core / f"passo_{name}.h" for name in MODEL),

@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 from passo.engine import NUMBERS
 from passo.grbl_setup import served
-from passo.linuxcnc_files import linuxcnc_files
+from passo.linuxcnc_files import HAL, linuxcnc_files
 from passo.machine_file import MachineFile, read_machine
 from passo.native import ffi
 from passo.rig import CHANGE, CHANGES_PER_DRAIN
@@ -32,7 +32,8 @@ EXAMPLE = paths.examples / "linuxcnc"
 MODULES = Path("/usr/lib/linuxcnc/modules")
 HEADERS = Path("/usr/include/linuxcnc/hal.h")
 NOBODY = 65534
-SECONDS_MAX = 900
+SECONDS_MAX = 450  # of homing, and of a program
+SAMPLES = "samples.txt"
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,7 @@ class Result:
     pins: dict[str, str]
     events: Any
     turns: Any  # clocks of the index of the spindle
+    samples: Any  # period x (commands of the joints, then their feedback), mm
     log: str
 
 
@@ -85,12 +87,29 @@ def alone() -> Iterator[Path]:
             shutil.rmtree(folder, ignore_errors=True)
 
 
+def sampled(joints: str) -> str:
+    """Lines of HAL that record the commands and the feedback of all joints in each period."""
+    signals = [f"{letter.lower()}-{what}" for what in ("cmd", "fb") for letter in joints]
+    nets = (f"net {signal} sampler.0.pin.{number}" for number, signal in enumerate(signals))
+    load = f"loadrt sampler depth=4000 cfg={'f' * len(signals)}"
+    return "\n".join([load, "addf sampler.0 servo-thread", *nets, f"loadusr halsampler -t {SAMPLES}", ""])
+
+
+def read_samples(file: Path) -> Any:
+    """They are complete, and each of one period; the last line may be cut."""
+    rows = [line.split() for line in file.read_text().splitlines()[:-1]]
+    found = np.array([[float(word) for word in row] for row in rows])
+    assert np.all(np.diff(found[:, 0]) == 1), "a sample was lost"
+    return found[:, 1:]
+
+
 def prepare(folder: Path, machine: MachineFile, program: str, device: str, changes: dict[str, str]) -> None:
     """The configuration that `passo make` makes, without its screen, and with changes of its files."""
     for name, lines in linuxcnc_files(machine).items():
         text = "\n".join([*lines, ""])
         for old, new in changes.items():
             text = text.replace(old, new)
+        text += sampled(machine.letters) if name == HAL else ""
         text = re.sub(r"^DISPLAY = .*", "DISPLAY = ./ui.py", text, flags=re.M)
         text = re.sub(r"^DEVICE = .*", f"DEVICE = {device}", text, flags=re.M)
         (folder / name).write_text(text)
@@ -99,13 +118,13 @@ def prepare(folder: Path, machine: MachineFile, program: str, device: str, chang
     folder.chmod(0o777)
 
 
-def _call(folder: Path, *command: str) -> subprocess.CompletedProcess[str]:
+def _call(folder: Path, *command: str, seconds: int = SECONDS_MAX) -> subprocess.CompletedProcess[str]:
     # it refuses to run as root
     user = ["setpriv", f"--reuid={NOBODY}", f"--regid={NOBODY}", "--clear-groups"]
     called = subprocess.Popen(
         [*(user if os.geteuid() == 0 else []), *command],
         cwd=folder,
-        env=os.environ | {"HOME": str(folder)},
+        env=os.environ | {"HOME": str(folder), "SECONDS_MAX": str(seconds)},
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -113,7 +132,7 @@ def _call(folder: Path, *command: str) -> subprocess.CompletedProcess[str]:
         start_new_session=True,  # all that it starts ends with it
     )
     try:
-        out, err = called.communicate(timeout=SECONDS_MAX)
+        out, err = called.communicate(timeout=2 * seconds)
     except subprocess.TimeoutExpired:
         os.killpg(called.pid, signal.SIGKILL)
         called.communicate()
@@ -191,10 +210,11 @@ def run_linuxcnc(
     changes: dict[str, str] | None = None,
     text: str = "",
     per_turn: int = 0,
+    seconds: int = SECONDS_MAX,
 ) -> Result:
     """Home and run a program; `changes`: of the text of its files; `text`: of another machine file.
 
-    `per_turn`: counts from index to index of the encoders of motors.
+    `per_turn`: counts from index to index of the encoders of motors; `seconds`: that the program may take.
     """
     with alone() as folder:
         installed()
@@ -206,11 +226,12 @@ def run_linuxcnc(
         with served(engine, machine, per_turn, rigs.extend) as core:
             with serving(core, place, keep=True) as server:
                 place.chmod(0o777)
-                done = _call(folder, "linuxcnc", "machine.ini")
+                done = _call(folder, "linuxcnc", "machine.ini", seconds=seconds)
             events, turns = server.events, indexes(*rigs[0]) if rigs else np.empty(0)
         logs = [file.read_text() for file in folder.glob("linuxcnc_*.txt")]
+        samples = read_samples(folder / SAMPLES) if (folder / SAMPLES).exists() else np.empty(0)
         result = folder / "result.json"
         found = json.loads(result.read_text()) if result.exists() else {}
         empty = {"homed": False, "ended": False, "said": [], "positions": [], "ferror": [], "pins": {}}
         log = "\n".join([done.stdout, done.stderr, *logs])
-        return Result(**(empty | found), events=events, turns=turns, log=log)
+        return Result(**(empty | found), events=events, turns=turns, samples=samples, log=log)

@@ -4,6 +4,7 @@
 from typing import Any
 
 import numpy as np
+from passo.grbl_setup import spindle_wheel
 from passo.machine_file import PROFILES, MachineFile
 from passo.path import PathAxis
 from passo.run import AXES_OF_CORES
@@ -33,14 +34,15 @@ def web_machine(machine: MachineFile) -> dict[str, Any]:
 def numbers(machine: MachineFile) -> list[float]:
     """The members of `struct web_machine` (sim/engine/passo_web_program.c)."""
     settings, pins, gcode = machine.settings, machine.pins, machine.gcode
-    motors = len(machine.motors)
-    core_axes = next(axes for axes in AXES_OF_CORES if axes >= motors)
+    core_axes = next(axes for axes in AXES_OF_CORES if axes >= machine.core_axes)
+    wheel = spindle_wheel(machine) if machine.spindle else {}
     rest = [0] * (MOTORS_MOST - len(settings.motors.rows))
     members = (
         *(settings.clock_hz, len(settings.axes), settings.junction_deviation),
         *(gcode.arc_tolerance, PROFILES.index(settings.profile), core_axes),
         *(pins.step_high, pins.step_low, pins.dir_setup, pins.dir_hold),
         *(gcode.spindle_maximum, gcode.left_out, gcode.inputs, gcode.power),
+        *(wheel.get(key, 0) for key in ("per_turn", "interval", "wander", "start_up")),
         len(settings.motors.rows),
         *(*settings.motors.bits(1), *rest, *settings.motors.bits(-1), *rest),
         *_limits(settings.motors.mixed),

@@ -21,7 +21,7 @@ from passo.engine import Engine, model_engine
 from passo.gcode import AXIS_LETTERS, NANOMETERS
 from passo.grbl_setup import attach, core_for
 from passo.machine_file import MachineFile, read_machine
-from passo.make_command import AXIS_PORTS, IMAGE, OUTPUTS, SWITCH_PORTS, at_home, core_of, definitions
+from passo.make_command import AXIS_PORTS, IMAGE, OUTPUTS, SWITCH_PORTS, core_of, definitions, wired
 from passo.part import read_part
 from passo.pins import INPUTS, Pin
 from passo.pins import OUTPUTS as CORE_OUTPUTS
@@ -151,7 +151,7 @@ class WholeMachine:
     def engine(self) -> Engine:
         """The Verilated board in the machine, as the sheet wires it."""
         machine, chosen = self.machine, board(self.machine.board)
-        made = *core_of(machine), "", at_home(machine, chosen)
+        made = *core_of(machine), "", wired(machine, chosen)
         design, pins = generate(chosen, self.folder / "fpga", *made)
         rtl = self.folder / f"{machine.board}_{self.path.stem}"
         shutil.copytree(paths.rtl, rtl, dirs_exist_ok=True)

@@ -4,13 +4,14 @@
 
 import importlib
 import json
+import os
 import subprocess
 import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-LIMIT = 300.0  # s
+LIMIT = float(os.environ["SECONDS_MAX"])  # of homing, and of the program
 ARRIVED = 1e-6  # mm; programs end where all axes have a whole step
 LOOK = 0.01
 SETTLED = 20  # looks at rest

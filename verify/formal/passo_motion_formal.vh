@@ -12,7 +12,7 @@ end
 
 wire f_too_far = following_hard & occupied;
 wire f_abort = command_abort | estop | input_hard | f_too_far;
-wire f_stop_hard = f_abort | (moving & (step_overrun | line_underrun));
+wire f_stop_hard = f_abort | ((moving | tracking) & step_overrun) | (moving & line_underrun);
 
 // --- How long RUN has lasted
 reg [3:0] f_run_age;
@@ -81,7 +81,7 @@ always @(posedge clk)
         default:
         drain_comes_from : assert ($past(state == STATE_SETTLE) && $past(!line_ended && !line_endless, 2));
       endcase
-    if ($past(begin_profile) && !$past(f_abort, 2) && !$past(stopping, 2))
+    if ($past(begin_profile) && !$past(f_stop_hard, 2) && !$past(stopping, 2))
       begins_when_told : assert (state == STATE_RUN || state == STATE_SETTLE);
     if (drop) drops_only_after_abort : assert (f_abort || $past(f_abort) || $past(f_abort, 2));
     if ($past(hold)) none_prepared_in_hold : assert (!prepare);
@@ -107,16 +107,16 @@ always @(posedge clk)
       if ($past(stopping, 2) && stopped) first_cause_stays : assert (cause == $past(soft_cause, 2));
       if ($past(estop && !stopping, 2)) estop_is_the_cause : assert (cause == CAUSE_ESTOP);
       if ($past(command_abort && !estop && !stopping, 2)) abort_is_the_cause : assert (cause == CAUSE_ABORT);
-      if ($past(input_hard && !command_abort && !estop && !(moving && step_overrun) && !stopping, 2))
+      if ($past(input_hard && !command_abort && !estop && !((moving || tracking) && step_overrun) && !stopping, 2))
         input_is_the_cause : assert (cause == $past(input_hard_cause, 2));
       if ($past(f_stop_hard, 2)) fault_stops : assert (stopped);
-      if ($past(moving && step_overrun && !command_abort && !estop && !stopping, 2))
+      if ($past((moving || tracking) && step_overrun && !command_abort && !estop && !stopping, 2))
         overrun_is_the_cause : assert (cause == CAUSE_STEP_OVERRUN);
       if ($past(moving && line_underrun && !step_overrun && !f_abort && !stopping, 2))
         underrun_is_the_cause : assert (cause == CAUSE_LINE_UNDERRUN);
-      if ($past(f_too_far && !stopping && !estop && !command_abort && !input_hard && !(moving && step_overrun), 2))
+      if ($past(f_too_far && !stopping && !estop && !command_abort && !input_hard && !((moving || tracking) && step_overrun), 2))
         too_far_is_the_cause : assert (cause == CAUSE_FOLLOWING_ERROR);
-      if ($past(stopping, 2) && ($past(!moving, 2) || ($past(rate_is_zero, 3) && $past(f_begun, 3))))
+      if ($past(stopping && !tracking, 2) && ($past(!moving, 2) || ($past(rate_is_zero, 3) && $past(f_begun, 3))))
         stop_ends_in_stopped : assert (stopped);
     end
     if (stopped && !$past(stopped)) begin

@@ -74,7 +74,8 @@ module passo_settings_proof (
     .answers_position(),
     .timing_place    (write_place),
     .timing          (write_timing),
-    .timing_is_minimal(write_is_minimal)
+    .timing_is_minimal(write_is_minimal),
+    .half             ()
   );
 
   passo_axis_settings u_settings (

@@ -5,6 +5,7 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from passo.expand.block import Word, split, texts, words_of
 from passo.expand.expression import Value, integer
@@ -51,6 +52,7 @@ class Options:
     tools: dict[int, Tool] = field(default_factory=dict)
     at_zero: bool = False  # the machine is known: at 0, without offsets
     surface: HeightMap | None = None  # in machine coordinates, that probes touch; needs at_zero
+    begin: Any = None  # with at_zero: a `struct passo_gcode` behind another program
     limit: int = LIMIT
 
 
@@ -94,8 +96,11 @@ class _Run:
     """One run of a program."""
 
     def __init__(self, path: Path, options: Options, say: Callable[[str], None], data: bytes | None):
-        self.options, self.say, self.folder = options, say, path.parent
-        self.machine = Machine(options.gcode, options.tools, options.at_zero)
+        self.options, self.say, self.path, self.folder = options, say, path, path.parent
+        letters = options.gcode.axis_letters
+        if options.surface and (missing := next((axis for axis in "XYZ" if axis not in letters), "")):
+            raise BadInputError(f"{path}: the machine has no axis {missing} to probe a surface")
+        self.machine = Machine(options.gcode, options.tools, options.at_zero, options.begin)
         self.parameters = ProgramParameters(self.machine)
         self.output = Output(self.machine, options.surface)
         self.program = _read(path) if data is None else read_program(path, _lines(data))
@@ -103,6 +108,7 @@ class _Run:
         self.count, self.repeating = 0, 0
 
     def run(self) -> list[PlainLine]:
+        self.output.begin(Place(self.path, 1))
         try:
             self._body(self.program.body)
             self.output.finish()

@@ -43,7 +43,7 @@ def follow(lines: Sequence[PlainLine], height_map: HeightMap, options: Options) 
 class _Follower:
     def __init__(self, height_map: HeightMap, options: Options):
         self.map = height_map
-        self.machine = Machine(options.gcode, {}, options.at_zero)
+        self.machine = Machine(options.gcode, {}, options.at_zero, options.begin)
         self.lines: list[PlainLine] = []
         self.added = 0.0  # height of where the machine is, if its Z has it
         self.followed = False

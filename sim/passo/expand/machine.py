@@ -8,6 +8,7 @@ axis are known from its first absolute motion on, an offset from the line on tha
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 from passo.expand.block import Word
 from passo.expand.height_map import HeightMap
@@ -64,20 +65,22 @@ class Motion:
 class Machine:
     """Takes plain lines, and tells the values of the predefined parameters."""
 
-    def __init__(self, settings: GcodeSettings, tools: dict[int, Tool], at_zero: bool):
-        """With `at_zero` the machine is known: at 0, without offsets."""
+    def __init__(self, settings: GcodeSettings, tools: dict[int, Tool], at_zero: bool, begin: Any = None):
+        """With `at_zero` the machine is known: at 0, without offsets, or as a `struct passo_gcode`."""
         self.tools, self.at_zero = tools, at_zero
         self.gcode = Gcode(settings)
+        if begin is not None:
+            self.gcode.c[0] = begin[0]
         set_tool_lengths(self.gcode.c, lengths(tools))
         self.compensation: int = 400
         self.diameters = False  # G7
-        self.tool: int | None = 0 if at_zero else None
+        self.tool: int | None = int(self.gcode.c.loaded) if at_zero else None
         self.probed: tuple[tuple[float, ...], bool] | None = None  # mm and work coordinates; touched
         self.input: float | None = 0.0 if at_zero else None
         axes = range(settings.axes)
         self._position = [at_zero for _ in axes]
         self._shift = [at_zero for _ in axes]
-        self._shifted: bool | None = False if at_zero else None
+        self._shifted: bool | None = any(self.gcode.c.shift) if at_zero else None
         self._systems = [[at_zero for _ in axes] for _ in SYSTEMS]
         self._length = at_zero
 

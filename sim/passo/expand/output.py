@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from passo.expand.block import Word
 from passo.expand.compensation import Compensation, Step
 from passo.expand.height_map import HeightMap
-from passo.expand.lathe import Lathe, Said
+from passo.expand.lathe import DIAMETERS, Lathe, Said
 from passo.expand.machine import CYCLES, FEED_MODE, LINES_AND_ARCS, MOTION, PLANE, SYSTEM, Machine, Motion
 from passo.expand.place import ExpandError, LineError, Place
 from passo.expand.refusals import explain
@@ -46,6 +46,13 @@ class Output:
         # In the plane of the compensation, while the tool is not where the program says.
         self._writer = Writer(machine.letters, machine.plane, [])
         self._compensated = False
+
+    def begin(self, place: Place) -> None:
+        """Plain lines have radii; where G7 is in force, a G8 comes first."""
+        if self.machine.mode("DIAMETER") == DIAMETERS:
+            self.machine.gcode.execute("G8")
+            self.machine.diameters = True
+            self.lines.append(PlainLine("G8", place))
 
     def take(self, text: str, words: Sequence[Word], comments: Sequence[str], place: Place) -> None:
         """A line as text, and its words; raises ExpandError."""

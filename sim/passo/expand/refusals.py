@@ -15,6 +15,7 @@ ADVICE: tuple[tuple[str, range, int, str, str], ...] = (
     ("G", range(101, 102), 23, "LinuxCNC", "edit the tool table instead"),
     ("G", range(171, 192), 23, "LinuxCNC", "there are no axes U V W"),
     ("G", range(330, 332), 20, "LinuxCNC", "the spindle needs an encoder: [spindle] of the machine file"),
+    ("G", range(370, 371), 20, "Fanuc", "type $TPW in the pause of M6, which measures the tool"),
     ("G", range(410, 423), 20, "NIST", "expand the file: passo expand"),
     ("G", range(500, 515), 20, "NIST, FIDIA", "scale in the CAM program"),
     ("G", range(520, 521), 20, "LinuxCNC, Fanuc", "write G92, or G10 L2"),

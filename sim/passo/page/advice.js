@@ -3,12 +3,10 @@
 // member `gcode` of RULES.
 "use strict";
 
-const THREADS = [330, 331];
-
 class Advice {
     // `isTaken(word)`: whether the interpreter has a command or word; `inputs`: number of those of M66.
-    constructor(rules, { letters, inputs, power, turn_counts }, isTaken) {
-        Object.assign(this, { rules, letters, inputs, power, hasEncoder: turn_counts > 0, isTaken });
+    constructor(rules, { letters, inputs, power }, isTaken) {
+        Object.assign(this, { rules, letters, inputs, power, isTaken });
     }
 
     // Whether a program has what only expanded ones may have.
@@ -41,7 +39,6 @@ class Advice {
             if (rules.axes.includes(letter) && !letters.includes(letter)) return `${error}: ${text}: the machine has the axes ${[...letters].join(" ")}`;
             if (letter in rules.letters && !this.isTaken(text)) return `${error}: ${text} (${rules.letters[letter]})`;
             if ("GM".includes(letter) && !this.isTaken(text)) {
-                if (this.hasEncoder && letter === "G" && THREADS.includes(code)) return `${error}: ${text} (this page turns no spindle): passo run`;
                 const known = rules.advice.find(([own, start, stop]) => own === letter && code >= start && code < stop);
                 const [norm, advice] = known ? known.slice(3) : rules.otherwise;
                 return `${error}: ${text} (${norm}): ${advice}`;

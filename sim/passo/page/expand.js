@@ -42,10 +42,12 @@ class Python {
         return python;
     }
 
-    // The answer of sim/passo/page/expanding.py for a program on a machine, with a table of tools.
-    expand(text, { numbers, letters, inputs, power, turn_counts }, tools) {
+    // The answer of sim/passo/page/expanding.py for one of several files on a machine, with a table of tools; `begin`: place
+    // of the interpreter behind the programs before, or 0; `map`: a height map, and whether Z follows it, or null.
+    expand(name, files, { numbers, letters, inputs, power, turn_counts }, tools, begin, map) {
         const [, , , arc_tolerance] = numbers, axes = letters.length;
         const settings = { axes, arc_tolerance, spindle_maximum: numbers[SPINDLE_MAXIMUM], turn_counts, letters, inputs, power: Boolean(power) };
-        return JSON.parse(this.expanding.expand(text, JSON.stringify(settings), tools));
+        const all = Object.fromEntries(files.map(file => [file.name, file.text]));
+        return JSON.parse(this.expanding.expand(name, JSON.stringify(all), JSON.stringify(settings), tools, begin, map?.text ?? "", Boolean(map?.follows)));
     }
 }

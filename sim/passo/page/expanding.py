@@ -2,32 +2,60 @@
 """In the page of `make web` this is passo.expanding: what the worker calls."""
 
 import json
+import os
+import shutil
 from pathlib import Path
+from typing import Any
 
 from passo.expand.expander import Options, expand_file
-from passo.expand.place import ExpandError
+from passo.expand.follow import follow
+from passo.expand.height_map import read_height_map
+from passo.expand.place import ExpandError, Place
 from passo.expand.tools import read_tools
 from passo.failure import BadInputError
 from passo.gcode import GcodeSettings
+from passo.native import ffi
 
-PROGRAM, TOOLS = Path("program"), Path("tool table")
+FOLDER, TOOLS, MAP = Path("/programs"), Path("tool table"), Path("height map")
 
 
-def expand(text: str, settings: str, tools: str) -> str:
-    """A program on a machine at 0: its plain lines, where each is from, and the texts of PRINT, as JSON.
+def expand(
+    name: str, files: str, settings: str, tools: str, begin: int, height_map: str = "", follows: bool = False
+) -> str:
+    """A program on a machine: its plain lines, where each is from, and the texts of PRINT, as JSON.
 
-    `settings`: those of GcodeSettings, as JSON; `tools`: a table. Of what cannot be expanded: what is wrong.
+    `files`: name and text of it and of those beside it, as JSON; `settings`: those of GcodeSettings; `tools`:
+    a table; `begin`: place of a `struct passo_gcode` behind another program, or 0: the machine is at 0;
+    `height_map`: one that probes touch, or that Z follows, or nothing. Of what cannot be expanded: what is
+    wrong.
     """
     said: list[str] = []
+    os.chdir("/")
+    shutil.rmtree(FOLDER, ignore_errors=True)
+    FOLDER.mkdir()
+    os.chdir(FOLDER)
     TOOLS.write_text(tools, encoding="utf-8")
+    MAP.write_text(height_map, encoding="utf-8")
+    found: dict[str, str] = json.loads(files)
+    for other, text in found.items():
+        Path(other).write_bytes(text.encode("utf-8", "replace"))
+
+    def told(place: Place) -> str:
+        return f"line {place.line}" if place.path == path and len(found) == 1 else str(place)
+
+    path = Path(name)
+    gcode: Any = ffi().at("struct passo_gcode", begin) if begin else None
     try:
-        options = Options(GcodeSettings(**json.loads(settings)), read_tools(TOOLS), at_zero=True)
-        lines = expand_file(PROGRAM, options, said.append, text.encode("utf-8", "replace"))
+        found_map = read_height_map(MAP) if height_map else None
+        gcode_settings, surface = GcodeSettings(**json.loads(settings)), None if follows else found_map
+        options = Options(gcode_settings, read_tools(TOOLS), at_zero=True, surface=surface, begin=gcode)
+        lines = expand_file(path, options, said.append)
+        if found_map and follows:
+            lines = follow(lines, found_map, options)
     except ExpandError as error:
-        place = f"line {error.place.line}" if error.place.path == PROGRAM else error.place
-        return json.dumps({"said": said, "wrong": f"{place}: {error.reason}"})
+        return json.dumps({"said": said, "wrong": f"{told(error.place)}: {error.reason}"})
     except BadInputError as error:
         return json.dumps({"said": said, "wrong": str(error)})
     return json.dumps(
-        {"said": said, "lines": [line.text for line in lines], "places": [line.place.line for line in lines]}
+        {"said": said, "lines": [line.text for line in lines], "places": [told(line.place) for line in lines]}
     )

@@ -65,7 +65,7 @@ class MachineReader {
         if (this.switches.soft_limits && !this.ends.some(end => end.home)) wrong("soft_limits: no axis has a home");
         const tolerance = own(data, "arc_tolerance", defaults.arc_tolerance);
         if (!tolerance) wrong("arc_tolerance must be greater than 0");
-        this.turnCounts = within("spindle", () => this.checkSpindle(spindle));
+        this.spindle = within("spindle", () => this.readSpindle(spindle));
         own(data, "laser", false, readFlag);
         own(data, "chip", "", (table, key) => readWord(table, key, RULES.chips));
         own(data, "host", "", (table, key) => readWord(table, key, RULES.hosts));
@@ -300,16 +300,18 @@ class MachineReader {
         }
     }
 
-    checkSpindle(maximum) {
+    // Counts per turn of its encoder and what its simulation needs, as spindle_wheel() of sim/passo/grbl_setup.py has them; 0: none.
+    readSpindle(maximum) {
         const { data } = this, { own } = MachineReader;
-        if (!data.has("spindle")) return 0;
+        if (!data.has("spindle")) return [0, 0, 0, 0];
         const table = readSubtable(data, "spindle"), [low, high] = RULES.counts, most = RULES.wander_max;
         checkKnown(table, RULES.keys.spindle);
         if (!maximum) wrong("it needs spindle_maximum");
         const counts = readInteger(table, "counts", low, high);
         const startUp = own(table, "start_up", RULES.defaults.start_up), wander = own(table, "wander", 0);
         if (!startUp || wander > most) wrong(`start_up must be greater than 0, wander at most ${most} %`);
-        return counts;
+        const one = RULES.ratio_one;
+        return [counts, rounded(this.hz * 60 * one / (maximum * counts)), rounded(wander * one / 100), rounded(startUp * this.hz)];
     }
 
     get motors() {
@@ -333,15 +335,15 @@ class MachineReader {
         return {
             numbers: [
                 this.hz, axes.length, this.deviation, tolerance, RULES.profiles.indexOf(profile),
-                RULES.cores.find(own => own >= count), ...this.pins, spindle, leftOut, has("inputs") * (1 + count), has("outputs"),
-                map.length, ...bits(1), ...bits(-1), ...limits(mixed), ...axes.flatMap(limits),
+                RULES.cores.find(own => own >= count + Number(this.spindle[0] > 0)), ...this.pins, spindle, leftOut, has("inputs") * (1 + count), has("outputs"),
+                ...this.spindle, map.length, ...bits(1), ...bits(-1), ...limits(mixed), ...axes.flatMap(limits),
             ],
             clock_hz: this.hz,
             letters: this.letters,
             profile,
             inputs: has("inputs") * (1 + count),
             power: has("outputs"),
-            turn_counts: this.turnCounts,
+            turn_counts: this.spindle[0],
             rows,
             motors: this.motors.map((name, n) => ({ name, per_step: 1 / axes[rows[n].findIndex(Boolean)].steps_per_mm.number })),
         };

@@ -81,6 +81,9 @@ class _Structure(ctypes.Structure):
     def __getitem__(self, index: int) -> Any:
         return self  # cffi's pointer to it
 
+    def __setitem__(self, index: int, value: Any) -> None:
+        ctypes.memmove(ctypes.addressof(self), ctypes.addressof(value), ctypes.sizeof(self))
+
 
 class Library:
     """The types, functions and constants of `layout` (web_python.layout()), as cffi has them."""
@@ -110,6 +113,12 @@ class Library:
     def new(self, name: str, value: dict[str, Any] | None = None) -> Any:
         """A structure."""
         return self._types[name.removesuffix(" *")](**value or {})
+
+    def at(self, name: str, place: int) -> Any:
+        """A copy of the structure at a place."""
+        made = self._types[name]()
+        self._memory.read(place, made)
+        return made
 
     def from_buffer(self, data: bytes) -> int:
         """A place of these bytes, up to the next call."""

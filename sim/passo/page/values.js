@@ -63,6 +63,12 @@ function short(number, drop = false) {
     return rest ? `${whole}.${rest}` : whole;
 }
 
+// The nearest integer, or the even one of two.
+function rounded(number) {
+    const below = Math.floor(number), rest = number - below;
+    return below + Number(rest > 0.5 || (rest === 0.5 && below % 2 === 1));
+}
+
 const letters = text => Array.from(text);
 
 // A value in an array or a table, as Python shows it there.

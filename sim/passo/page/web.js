@@ -4,6 +4,7 @@
 
 const CLOCKS = [16e6, 72e6, 100e6];
 const GCODE = "G-code", CONSOLE = "moves";
+const PROGRAM = "program";  // name of what is typed
 const SHOWN = 40000;  // characters of a program that can be edited; of a longer file the beginning is shown
 const PROFILES = ["linear", "cosine", "sigmoid", "jerk"], PROFILE = 4;  // its place in `struct web_machine`
 const LONG_LINK = 32000;
@@ -40,7 +41,7 @@ function showVerdict(text, kind) {
 class Form {
     // `example`: a program in G-code and the file of its machine.
     constructor(runner, example) {
-        Object.assign(this, { runner, example, machine: null, whole: null, done: 0, running: false });
+        Object.assign(this, { runner, example, machine: null, whole: null, files: [], done: 0, running: false });
         for (const hz of CLOCKS) element(by("clock"), "option", "", `${hz / 1e6} MHz`).value = hz;
         for (const name of [...Object.keys(EXAMPLES), "a part in G-code"]) element(by("example"), "option", "", name);
         by("language").onchange = () => this.chosen();
@@ -55,10 +56,12 @@ class Form {
         };
         by("open").onclick = () => by("file").click();
         by("file").onchange = ({ target }) => {
-            if (target.files.length) this.open(target.files[0]);
+            const files = [...target.files];
             target.value = "";
+            if (files.length) this.open(files);
         };
-        by("tools").onchange = () => this.run();
+        by("files").onchange = ({ target }) => this.choose(Number(target.value));
+        by("tools").onchange = by("map").onchange = by("map-use").onchange = () => this.run();
         by("machine-text").oninput = () => this.readMachine();
         by("machine-text").onchange = () => this.run();
         by("machine-example").onclick = () => {
@@ -95,7 +98,7 @@ class Form {
         for (const kind of ["dragleave", "drop"]) addEventListener(kind, () => document.body.classList.remove("dropping"));
         addEventListener("drop", event => {
             event.preventDefault();
-            if (event.dataTransfer.files.length) this.open(event.dataTransfer.files[0]);
+            if (event.dataTransfer.files.length) this.open([...event.dataTransfer.files]);
         });
     }
 
@@ -108,12 +111,36 @@ class Form {
         const gcode = this.language === GCODE;
         by("clock").hidden = gcode;
         by("plain").hidden = !gcode;
-        by("machine-file").hidden = by("tool-table").hidden = by("machine-told").hidden = !gcode;
+        by("machine-file").hidden = by("tool-table").hidden = by("height-map").hidden = by("machine-told").hidden = !gcode;
         by("lines").rows = gcode ? 12 : 4;
     }
 
-    // Shows a program; a long one cannot be edited here.
-    put(text, language) {
+    // Shows a program, the only one.
+    put(text, language) { this.putFiles([{ name: PROGRAM, text }], language); }
+
+    // Shows the first one of several files, or another.
+    putFiles(files, language, number = 0) {
+        this.files = files;
+        const list = by("files");
+        list.textContent = "";
+        files.forEach(({ name, plays = true }, n) => { element(list, "option", "", plays ? name : `${name} (subroutines)`).value = n; });
+        list.hidden = files.length < 2;
+        list.value = number;
+        this.putText(files[number].text, language);
+    }
+
+    // Shows another one of the files; this one is kept as it was edited.
+    choose(number) { this.putFiles(this.edited, GCODE, number); }
+
+    // The files, as inTurn() has them; that which is shown as it was edited.
+    get edited() {
+        const shown = Number(by("files").value);
+        const files = this.files.map((file, n) => (n === shown ? { ...file, text: this.text } : file));
+        return files.length > 1 ? inTurn(files) : files.map(file => ({ ...file, plays: true }));
+    }
+
+    // A long text cannot be edited here.
+    putText(text, language) {
         const long = text.length > SHOWN;
         this.whole = long ? text : null;
         by("lines").value = long ? `${text.slice(0, text.lastIndexOf("\n", SHOWN))}\n…` : text;
@@ -144,36 +171,51 @@ class Form {
         by("machine-text").ariaInvalid = String(text !== "");
     }
 
-    // A program, or a machine for G-code.
-    async open(file) {
-        const isMachine = file.name.toLowerCase().endsWith(".toml");
-        if (isMachine) {
-            if (this.language !== GCODE) this.put(this.example.program, GCODE);
-            by("machine-file").open = true;
-            try {
-                this.putMachine(await textOf(file));
-            } catch (error) {
-                this.putMachine("");
-                this.refuse(error.message);
-            }
-            return this.run();
+    // Programs, files of subroutines, a machine for G-code, a table of tools, a height map; of the latter three the last one.
+    async open(files) {
+        const has = (file, end) => file.name.toLowerCase().endsWith(end), own = end => files.filter(file => has(file, end)).at(-1);
+        const programs = files.filter(file => ![".toml", ".tbl", ".csv"].some(end => has(file, end)));
+        const [machine, tools, map] = [".toml", ".tbl", ".csv"].map(own);
+        if (machine) await this.openMachine(machine);
+        if (tools) by("tools").value = await tools.text();
+        if (map) by("map").value = await map.text();
+        if (programs.length) {
+            const texts = await Promise.all(programs.map(async file => ({ name: file.name, text: await file.text() })));
+            this.putFiles(texts.length > 1 ? inTurn(texts) : texts, GCODE);
+            const lines = texts.reduce((sum, { text }) => sum + text.split("\n").length, 0);
+            const what = texts.length > 1 ? `${texts.length} files` : texts[0].name;
+            this.say(`${what}: ${grouped(lines)} lines${this.whole ? ", of which the first are shown" : ""}`);
         }
-        this.put(await file.text(), GCODE);
-        this.say(`${file.name}: ${grouped(this.text.split("\n").length)} lines${this.whole ? ", of which the first are shown" : ""}`);
         return this.run();
     }
 
+    async openMachine(file) {
+        if (this.language !== GCODE) this.put(this.example.program, GCODE);
+        by("machine-file").open = true;
+        try {
+            this.putMachine(await textOf(file));
+        } catch (error) {
+            this.putMachine("");
+            this.refuse(error.message);
+        }
+    }
+
     get state() {
-        const { language, text: lines } = this, machine = by("machine-text").value;
+        const { language, edited } = this, lines = edited.length > 1 ? "" : this.text, machine = by("machine-text").value;
         const own = { ...(machine === this.example.machine ? {} : { machine }), ...(this.tools ? { tools: this.tools } : {}) };
+        if (this.map) own.map = this.map;
+        if (edited.length > 1) own.files = edited.map(({ name, text }) => ({ name, text }));
         return { language, lines, clock: Number(by("clock").value), beside: by("beside").value, ...own };
     }
 
-    set state({ language, lines, clock, beside = "", machine = this.example.machine, tools = "" }) {
+    set state({ language, lines, clock, beside = "", machine = this.example.machine, tools = "", map = null, files = [] }) {
         this.putMachine(machine);
         by("tools").value = tools;
+        by("map").value = map?.text ?? "";
+        by("map-use").value = map?.follows ? "follows" : "";
         if (PROFILES.includes(beside)) by("beside").value = beside;
-        this.put(lines, language === GCODE ? GCODE : CONSOLE);
+        if (files.length) this.putFiles(inTurn(files), GCODE);
+        else this.put(lines, language === GCODE ? GCODE : CONSOLE);
         if (CLOCKS.includes(clock)) by("clock").value = clock;
     }
 
@@ -198,25 +240,33 @@ class Form {
     }
 
     // The message that plays what is typed, with a profile instead of its own.
-    job(profile, expand) {
+    job(profile) {
         if (this.language === GCODE) {
             const { machine } = this, numbers = [...machine.numbers];
             if (profile) numbers[PROFILE] = PROFILES.indexOf(profile);
-            return { kind: "play", text: this.text, machine: { ...machine, numbers }, tools: expand ? this.tools : null };
+            return { kind: "play", files: this.programs, machine: { ...machine, numbers }, tools: this.tools, map: this.map };
         }
         const text = profile ? this.text.replace(/profile=\w+/g, `profile=${profile}`) : this.text;
         return { kind: "type", lines: text.split("\n").map(line => line.trim()).filter(Boolean), hz: Number(by("clock").value) };
     }
 
+    get map() { return by("map").value.trim() ? { text: by("map").value, follows: by("map-use").value !== "" } : null; }
     get tools() { return by("tools").value.trim() && by("tools").value; }
-    get expands() { return this.language === GCODE && (Boolean(this.tools) || Advice.needsExpanding(this.text, RULES.gcode)); }
 
-    // The program as plain lines.
+    // The files with those marked that plain lines are made of.
+    get programs() {
+        return this.edited.map(file => ({ ...file, expands: Boolean(this.tools || this.map) || Advice.needsExpanding(file.text, RULES.gcode) }));
+    }
+
+    get expands() { return this.language === GCODE && this.programs.some(file => file.plays && file.expands); }
+
+    // The program that is shown as plain lines.
     async plain() {
-        const { text, machine, tools } = this;
-        if (!this.expands) return text;
+        const { machine, tools, map, programs: files } = this, { name, text, plays, expands } = files[Number(by("files").value)];
+        if (!plays) throw new BadValue(`${name} has subroutines: show the program that calls them`);
+        if (!expands) return text;
         await this.runner.python();
-        const { lines, wrong } = await this.runner.ask({ kind: "expand", text, machine, tools });
+        const { lines, wrong } = await this.runner.ask({ kind: "expand", name, files, machine, tools, map });
         if (wrong) throw new BadValue(wrong);
         return lines.map(line => `${line}\n`).join("");
     }
@@ -230,10 +280,10 @@ class Form {
         this.busy(true);
         try {
             if (this.language === GCODE && this.refused) throw new BadValue(this.refused);
-            const profile = by("beside").value, expand = this.expands;
-            if (expand) await this.runner.python();
-            const other = profile ? await this.runner.ask(this.job(profile, expand)) : null;
-            await this.show(await this.runner.ask(this.job("", expand)), other, profile);
+            const profile = by("beside").value;
+            if (this.expands) await this.runner.python();
+            const other = profile ? await this.runner.ask(this.job(profile)) : null;
+            await this.show(await this.runner.ask(this.job("")), other, profile);
         } catch (error) {
             clearMotion();
             by("answer").textContent = "";

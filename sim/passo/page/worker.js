@@ -2,8 +2,9 @@
 // The worker of the page: the core, its planner and its console as WebAssembly. It works in slices, between which it
 // hears the page, and answers with motions whose arrays move without being copied.
 //
-// In: {kind: "load", module, rules}, {kind: "python", packed}, {kind: "play", text, machine, tools}, {kind: "type", lines, hz},
-//     {kind: "expand", text, machine, tools}, {kind: "csv"}, {kind: "report"}, {kind: "cancel"}
+// In: {kind: "load", module, rules}, {kind: "python", packed}, {kind: "play", files, machine, tools, map}, {kind: "type", lines, hz},
+//     {kind: "expand", name, files, machine, tools, map}, {kind: "csv"}, {kind: "report"}, {kind: "cancel"}
+//     files: {name, text, plays, expands}, as of inTurn(); expands: plain lines of it are played
 // Out: {kind: "ready"}, {kind: "progress", share, seconds}, {kind: "progress", doing}, {kind: "result", text, wrong, motion},
 //      {kind: "expanded", said, wrong} or {.., lines, places}, {kind: "csv", blob}, {kind: "report", facts, edges}, {kind: "failure", text}
 "use strict";
@@ -60,43 +61,73 @@ class Core {
         return status;
     }
 
-    // What is wrong with the lines of a program, a sentence each; `at(n)`: where line n is from.
-    refusals(text, machine, at) {
-        const lines = text.split(/\r\n|\r|\n/), count = this.c.refused();
-        const told = this.said().split("\n").filter(Boolean), more = count - told.length;
+    // What is wrong with the lines of programs, a sentence each.
+    refusals(programs, machine) {
+        const count = this.c.refused(), told = this.said().split("\n").filter(Boolean), more = count - told.length;
         const advice = new Advice(this.rules, machine, word => {
             const bytes = encoded(word);
-            this.put(bytes, this.c.program(bytes.length));
+            this.put(bytes, this.c.room(bytes.length));
             return !this.rules.not_taken.includes(this.c.tries());
         });
         const wrong = told.map(line => {
-            const [, number, error, code] = /^(\d+): ((?:error:(\d+))?.*)/.exec(line);
-            return `line ${at(Number(number))}: ${code ? advice.explain(Number(code), error, lines[number - 1]) : `${error}: passo run --surface MAP.csv simulates one`}`;
+            const [, file, number, error, code] = /^(\d+):(\d+): ((?:error:(\d+))?.*)/.exec(line), program = programs[file];
+            const text = code ? advice.explain(Number(code), error, program.lines[number - 1]) : `${error}: a height map simulates one`;
+            return `${program.at(Number(number))}: ${text}`;
         });
         return more > 0 ? [...wrong, `and ${more} more lines`] : wrong;
     }
 
-    // Plays G-code on a machine after reset (struct web_machine). Returns what it said, what is wrong with it, and a
-    // motion or null. `tools`: their table, with which the program is expanded; null: it is plain.
-    async play(text, machine, tools) {
-        if (tools === null) return this.playPlain(text, machine);
-        const { said, wrong, lines, places } = this.python.expand(text, machine, tools);
-        const played = wrong ? { wrong: [wrong], motion: null } : await this.playPlain(lines.join("\n"), machine, n => places[n - 1]);
-        return { ...played, text: said.length ? [...said, ...played.wrong].join("\n") : "" };
+    // Checks programs of these files one after the other, each from where the one before ends, on a machine (struct
+    // web_machine), expanded where they need that. Returns the texts of PRINT, the programs, and what ends this.
+    read(files, playing, machine, tools, map) {
+        this.said();
+        new Float64Array(this.c.memory.buffer, this.c.machine(), machine.numbers.length).set(machine.numbers);
+        this.c.reset();
+        const programs = [], said = [];
+        for (const { name, text, expands } of playing) {
+            const own = expands ? this.python.expand(name, files, machine, tools, programs.length && this.c.gcode(), map) : { said: [], lines: null };
+            said.push(...own.said);
+            if (own.wrong) return { said, programs, wrong: own.wrong };
+            const whole = own.lines ? own.lines.join("\n") : text, lines = own.lines ?? text.split(/\r\n|\r|\n/);
+            if (files.length > 1 && !lines.some(line => Advice.bare(line))) return { said, programs, wrong: `${name}: the file has no G-code` };
+            const at = n => own.places?.[n - 1] ?? (files.length > 1 ? `${name}:${n}` : `line ${n}`);
+            const bytes = encoded(whole.endsWith("\n") ? whole : `${whole}\n`);
+            this.put(bytes, this.c.room(bytes.length));
+            if (!this.c.add()) return { said, programs, wrong: "there are too many files" };
+            programs.push({ lines, at, kept: this.c.kept(programs.length) });
+        }
+        return { said, programs, wrong: "" };
     }
 
-    async playPlain(text, machine, at = n => n) {
-        const { numbers, motors, clock_hz } = machine;
-        const bytes = encoded(text);
-        this.put(bytes, this.c.program(bytes.length));
-        new Float64Array(this.c.memory.buffer, this.c.machine(), numbers.length).set(numbers);
+    // The plain lines of one of several programs, where each is from, and the texts of PRINT; or what is wrong.
+    expanded(name, files, machine, tools, map) {
+        const before = files.slice(0, files.findIndex(file => file.name === name)).filter(file => file.plays);
+        const { programs, wrong } = this.read(files, before, machine, tools, map);
+        return wrong ? { said: [], wrong } : this.python.expand(name, files, machine, tools, programs.length && this.c.gcode(), map);
+    }
+
+    // Plays G-code on a machine after reset. Returns what it said, what is wrong with it, and a motion or null.
+    async play(files, machine, tools, map) {
+        const { said, programs, wrong } = this.read(files, files.filter(file => file.plays), machine, tools, map);
+        const played = wrong ? { wrong: [wrong], motion: null } : await this.playRead(programs, machine);
+        const unread = wrong ? 0 : this.c.unread(), more = unread ? [`${unread} lines behind the end of the program are not read`] : [];
+        return { ...played, text: said.length + more.length ? [...said, ...more, ...played.wrong].join("\n") : "" };
+    }
+
+    async playRead(programs, machine) {
+        const { motors, clock_hz } = machine;
+        if (this.c.refused()) return { wrong: this.refusals(programs, machine), motion: null };
+        const at = taken => {
+            let rest = taken, number = 0;
+            while (rest > programs[number].kept && number + 1 < programs.length) rest -= programs[number++].kept;
+            return programs[number].at(rest);
+        };
         let status = this.c.begin();
-        if (this.c.refused()) return { text: "", wrong: this.refusals(text, machine, at), motion: null };
         const whole = Math.max(1, this.c.length());
         if (status === GOES_ON) status = await this.through(() => this.c.go(TURNS), clock_hz, () => this.c.taken_bytes() / whole);
-        const said = this.said().trim(), taken = this.c.taken();
-        if (status !== DONE && status !== GOES_ON) return { text: "", wrong: [taken ? `line ${at(taken)}: ${said}` : said], motion: null };
-        return { text: "", wrong: [], motion: this.motion(motors, clock_hz, "mm", status === DONE ? "" : `canceled at line ${at(taken)}`) };
+        const said = this.said().trim(), blamed = this.c.blamed();
+        if (status !== DONE && status !== GOES_ON) return { wrong: [blamed ? `${at(blamed)}: ${said}` : said], motion: null };
+        return { wrong: [], motion: this.motion(motors, clock_hz, "mm", status === DONE ? "" : `canceled at ${at(this.c.taken())}`) };
     }
 
     // Executes lines of the console on a core after reset. Returns what it said, and a motion or null.
@@ -217,12 +248,12 @@ const answers = {
         core.python = await Python.load(packed, core.c);
         return { kind: "ready" };
     },
-    async play({ text, machine, tools }) {
-        if (tools !== null) postMessage({ kind: "progress", doing: "expanding the program" });
-        return { kind: "result", ...await core.play(text, machine, tools) };
+    async play({ files, machine, tools, map }) {
+        if (files.some(file => file.plays && file.expands)) postMessage({ kind: "progress", doing: "expanding the program" });
+        return { kind: "result", ...await core.play(files, machine, tools, map) };
     },
     type: async ({ lines, hz }) => ({ kind: "result", ...await core.type(lines, hz) }),
-    expand: async ({ text, machine, tools }) => ({ kind: "expanded", ...core.python.expand(text, machine, tools) }),
+    expand: async ({ name, files, machine, tools, map }) => ({ kind: "expanded", ...core.expanded(name, files, machine, tools, map) }),
     report: async () => ({ kind: "report", ...await reportOf(core) }),
     csv: async () => ({ kind: "csv", blob: csvOf(core) }),
 };

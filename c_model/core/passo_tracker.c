@@ -1,0 +1,295 @@
+/* SPDX-License-Identifier: MIT
+ * Trackers of a channel. See rtl/passo_tracker.v and rtl/passo_trackers.v.
+ *
+ * The unit computes with words of 16 bits; here a turn is computed when what it depends on has been read.
+ */
+#include <stddef.h>
+
+#include "passo_model.h"
+#include "passo_words.h"
+
+enum {
+	SLOT_SETTINGS = 1,
+	SLOT_TARGET = 2,
+	SLOT_DISTANCE = 17, /* all words have been read */
+	SLOT_ACCELERATION = 18,
+	SLOT_SPEED = 20,
+	SLOT_SHOWN = 21,
+	SLOT_LAST = 31
+};
+
+static bool sign_of(uint64_t value)
+{
+	return value >> 63 != 0u;
+}
+
+static unsigned turns_of(const struct passo_channel *channel)
+{
+	return channel->axes > 4u ? 8u : 4u;
+}
+
+void passo_trackers_reset(struct passo_trackers *trackers, bool present)
+{
+	*trackers = (struct passo_trackers){.present = present, .clears = 2, .clears_position = true};
+}
+
+void passo_trackers_restart(struct passo_trackers *trackers, const struct passo_trackers *before)
+{
+	passo_trackers_reset(trackers, before->present);
+	for (unsigned i = 0; i < PASSO_AXES_MAX; i++) {
+		const struct passo_tracker_axis *axis = &before->axis[i];
+
+		trackers->axis[i] = (struct passo_tracker_axis){.host = axis->host,
+		    .target = axis->target,
+		    .speed = axis->speed,
+		    .acceleration = axis->acceleration};
+	}
+}
+
+/* The word that the host writes to, if there is such an axis. */
+static uint32_t *written_word(struct passo_trackers *trackers, unsigned axes, uint8_t address)
+{
+	const unsigned number = address % PASSO_AXES_MAX;
+	const unsigned in_axes = (unsigned)address - PASSO_CHANNEL_AXIS_BASE;
+	const unsigned axis = in_axes / PASSO_CHANNEL_AXIS_STRIDE;
+
+	if (address - number == PASSO_CHANNEL_TRACKER_TARGET_BASE && number < axes)
+		return &trackers->axis[number].host.target[0];
+	if (address - number == PASSO_CHANNEL_TRACKER_TARGET_DOWN_BASE && number < axes)
+		return &trackers->axis[number].host.target[1];
+	if (address < PASSO_CHANNEL_AXIS_BASE || axis >= axes)
+		return NULL;
+	switch (in_axes % PASSO_CHANNEL_AXIS_STRIDE) {
+	case PASSO_AXIS_TRACKER_SPEED:
+		return &trackers->axis[axis].host.speed;
+	case PASSO_AXIS_TRACKER_ACCELERATION:
+		return &trackers->axis[axis].host.acceleration;
+	default:
+		return NULL;
+	}
+}
+
+static void begin_turn(struct passo_trackers *trackers, unsigned i, bool brake, bool hold)
+{
+	const struct passo_tracker_axis *axis = &trackers->axis[i];
+	const bool rests = axis->velocity == 0u;
+
+	trackers->now = (struct passo_tracker_turn){
+	    .negative = axis->negative,
+	    .rests = rests,
+	    .target_down = trackers->join[i].went_down,
+	    .brakes = !axis->enabled || brake || trackers->clears != 0u || (hold && rests),
+	    .cleared = trackers->clears != 0u,
+	    .cleared_position = trackers->clears_position,
+	};
+}
+
+/* What the sums of a turn say. */
+static void compare(struct passo_tracker_turn *now, const struct passo_tracker_axis *axis)
+{
+	const bool negative = now->negative;
+	const uint64_t target = (uint64_t)axis->target << 32;
+	uint64_t y = target - axis->position - (negative ? 1u : 0u);
+
+	now->slow = axis->speed >= axis->velocity;
+	now->slower = now->slow && axis->speed - axis->velocity >= axis->acceleration;
+	now->there = target == axis->position;
+	now->behind = sign_of(y) != negative;
+	y = negative ? y + axis->stopping : y - axis->stopping;
+	now->near = sign_of(y) != negative;
+	y = negative ? y + axis->velocity : y - axis->velocity;
+	y = negative ? y + axis->acceleration : y - axis->acceleration;
+	now->close = sign_of(y) != negative;
+}
+
+/* Steps are made where the position passes the middle between two. */
+static bool nearest_is_odd(uint64_t position)
+{
+	return ((position >> 32 ^ position >> 31) & 1u) != 0u;
+}
+
+static void move(struct passo_trackers *trackers, struct passo_tracker_axis *axis)
+{
+	const struct passo_tracker_turn *now = &trackers->now;
+	const bool speeds = !now->brakes && !now->close && now->slower;
+	const bool keeps = !speeds && (now->rests || (!now->brakes && !now->near && now->slow));
+	const uint32_t change = keeps ? 0u : axis->acceleration;
+	const uint32_t old = axis->velocity;
+	const bool was_odd = nearest_is_odd(axis->position);
+	uint32_t velocity = speeds ? old + change : old - change;
+
+	if (now->cleared)
+		velocity = 0;
+	const bool lands =
+	    velocity == 0u && !now->brakes && !now->behind && (now->rests ? now->close : now->near);
+	if (now->cleared)
+		axis->stopping = 0;
+	else if (speeds)
+		axis->stopping += velocity;
+	else if (!keeps)
+		axis->stopping -= old;
+	if (now->cleared_position)
+		axis->position = 0;
+	else if (lands)
+		axis->position = (uint64_t)axis->target << 32;
+	else
+		axis->position += now->negative ? 0u - (uint64_t)velocity : velocity;
+	axis->velocity = velocity;
+	axis->step_made = nearest_is_odd(axis->position) != was_odd && trackers->clears == 0u;
+	axis->negative = now->negative != (now->rests && now->behind && !now->brakes);
+	axis->at_target = now->there;
+	trackers->step_down = axis->step_made && now->negative;
+}
+
+/* A clock of the turn of an axis; `written`: the host writes a setting in this clock. */
+static void clock_turn(
+    struct passo_trackers *trackers, unsigned i, bool written, const struct passo_tracker_wires *wires)
+{
+	struct passo_tracker_axis *axis = &trackers->axis[i];
+
+	switch (trackers->slot) {
+	case SLOT_SETTINGS:
+		begin_turn(trackers, i, wires->brake, wires->hold);
+		break;
+	case SLOT_TARGET:
+		if (!written)
+			axis->target = axis->host.target[trackers->now.target_down ? 1 : 0];
+		break;
+	case SLOT_DISTANCE:
+		compare(&trackers->now, axis);
+		break;
+	case SLOT_ACCELERATION:
+		if (!written)
+			axis->acceleration = axis->host.acceleration;
+		break;
+	case SLOT_SPEED:
+		if (!written)
+			axis->speed = axis->host.speed;
+		break;
+	case SLOT_LAST:
+		move(trackers, axis);
+		trackers->now = (struct passo_tracker_turn){0};
+		break;
+	default:
+		break;
+	}
+}
+
+static void clock_clearing(
+    struct passo_trackers *trackers, bool tick_ends, const struct passo_tracker_wires *wires)
+{
+	if (tick_ends && trackers->clears != 0u) {
+		trackers->clears--;
+		trackers->clears_position = trackers->clears_position && trackers->clears != 0u;
+	}
+	if (wires->halt || wires->zero) {
+		trackers->clears = 2;
+		for (unsigned i = 0; i < PASSO_AXES_MAX; i++)
+			trackers->axis[i].enabled = false;
+	}
+	trackers->clears_position = trackers->clears_position || wires->zero;
+}
+
+void passo_tracker_clock(struct passo_channel *channel, const struct passo_bus *bus, bool selected,
+    const struct passo_tracker_wires *wires)
+{
+	struct passo_trackers *trackers = &channel->trackers;
+	const uint8_t address = (uint8_t)bus->address;
+	const unsigned turn = trackers->turn;
+	const bool turn_ends = trackers->slot == SLOT_LAST;
+	const bool tick_ends = turn_ends && turn == turns_of(channel) - 1u;
+	const bool shows = trackers->slot == SLOT_SHOWN && !bus->read;
+	uint32_t *const word =
+	    trackers->writes_setting ? written_word(trackers, channel->axes, trackers->written) : NULL;
+
+	for (unsigned i = 0; i < channel->axes; i++) {
+		struct passo_tracker_axis *axis = &trackers->axis[i];
+
+		axis->moves = axis->velocity != 0u || (axis->enabled && !axis->at_target && !wires->brake);
+		axis->step_made = false;
+		if (shows)
+			axis->shown = (uint32_t)(axis->position >> 32);
+	}
+	if (turn < channel->axes)
+		clock_turn(trackers, turn, word != NULL, wires);
+	if (trackers->writes_enable)
+		for (unsigned i = 0; i < channel->axes; i++)
+			trackers->axis[i].enabled = (bus->data >> i & 1u) != 0u;
+	clock_clearing(trackers, tick_ends, wires);
+	trackers->hold = wires->hold;
+	trackers->writes_enable = selected && bus->write && address == PASSO_CHANNEL_TRACKER_ENABLE;
+	if (word != NULL)
+		*word = bus->data;
+	trackers->writes_setting = selected && bus->write;
+	if (trackers->writes_setting)
+		trackers->written = address;
+	trackers->slot = (uint8_t)((trackers->slot + 1u) % PASSO_TRACKER_TURN);
+	if (turn_ends)
+		trackers->turn = (uint8_t)((turn + 1u) % turns_of(channel));
+}
+
+uint32_t passo_trackers_value(const struct passo_channel *channel, uint8_t address)
+{
+	struct passo_channel_tracker_state state = {0};
+
+	if (!channel->trackers.present || address != PASSO_CHANNEL_TRACKER_STATE)
+		return 0;
+	for (unsigned i = 0; i < channel->axes; i++) {
+		const struct passo_tracker_axis *axis = &channel->trackers.axis[i];
+
+		state.enabled |= (uint8_t)((axis->enabled ? 1u : 0u) << i);
+		state.moves |= (uint8_t)((axis->moves ? 1u : 0u) << i);
+		state.at_target |= (uint8_t)((axis->at_target ? 1u : 0u) << i);
+	}
+	return passo_pack_channel_tracker_state(&state);
+}
+
+/* Of one axis: whether each turn leaves it as it is. */
+static bool axis_rests(const struct passo_tracker_axis *axis, const struct passo_tracker_join *join)
+{
+	const bool there = axis->position == (uint64_t)axis->target << 32;
+
+	return axis->velocity == 0u && !axis->step_made && !axis->moves && join->owed == 0
+	    && axis->target == axis->host.target[join->went_down ? 1 : 0] && axis->speed == axis->host.speed
+	    && axis->acceleration == axis->host.acceleration && axis->at_target == there
+	    && (there || !axis->enabled) && axis->shown == (uint32_t)(axis->position >> 32);
+}
+
+bool passo_trackers_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs)
+{
+	const struct passo_trackers *trackers = &channel->trackers;
+	struct passo_channel_wires wires = {0};
+
+	if (!trackers->present)
+		return true;
+	if (trackers->clears != 0u || trackers->busy || trackers->writes_enable || trackers->writes_setting)
+		return false;
+	passo_admission_wires(&channel->admission, inputs->bus, inputs->tables_wanted, &wires);
+	if (trackers->hold != (wires.hold || passo_inputs_requests(channel, inputs).wait))
+		return false;
+	for (unsigned i = 0; i < channel->axes; i++) {
+		const bool down = ((uint32_t)channel->line.directions >> i & 1u) != 0u;
+		const struct passo_tracker_join *join = &trackers->join[i];
+		const bool moves = passo_trackers_path_moves(channel, i);
+
+		if (!axis_rests(&trackers->axis[i], join)
+		    || (moves && (join->went_down != down || join->turned)))
+			return false;
+	}
+	return true;
+}
+
+void passo_trackers_skip(struct passo_channel *channel, uint64_t clocks)
+{
+	struct passo_trackers *trackers = &channel->trackers;
+	const uint64_t tick = (uint64_t)turns_of(channel) * PASSO_TRACKER_TURN;
+	const uint64_t now = trackers->turn * PASSO_TRACKER_TURN + trackers->slot;
+
+	trackers->slot = (uint8_t)((now + clocks) % PASSO_TRACKER_TURN);
+	trackers->turn = (uint8_t)((now + clocks) % tick / PASSO_TRACKER_TURN);
+	trackers->now = (struct passo_tracker_turn){0};
+	if (trackers->turn < channel->axes && trackers->slot > SLOT_SETTINGS)
+		begin_turn(trackers, trackers->turn, false, trackers->hold);
+	if (trackers->turn < channel->axes && trackers->slot > SLOT_DISTANCE)
+		compare(&trackers->now, &trackers->axis[trackers->turn]);
+}

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// Trackers: a second hand on every axis of a channel, and how its steps join those of the path. Wiring only.
+//
+// Promise: the steps requested are those of the path and of the trackers, summed. While no tracker moves and none is
+// owed a step (`busy` is low), requests and directions are those of the path, on the same clock.
+`resetall
+`timescale 1ns / 1ps
+`default_nettype none
+
+module passo_trackers #(
+  parameter AXES = 4
+) (
+  input  wire            clk,
+  input  wire            rst,
+  // bus
+  input  wire            bus_write,
+  input  wire            bus_read,
+  input  wire            select,
+  input  wire [     7:0] bus_address,   // within the channel
+  input  wire [AXES-1:0] bus_bits,      // lower bits of the data
+  input  wire [    15:0] bus_half,      // one clock late the upper half of the data, then the lower one
+  output wire [    31:0] read_data,
+  // motion
+  input  wire            halt,          // hard stop, or stopped
+  input  wire            zero,          // strobe: only at rest
+  input  wire            brake,         // a soft stop is in progress
+  input  wire            hold,          // no motion may begin
+  output reg             busy,          // a tracker moves, is about to, or is owed a step
+  // path
+  input  wire [AXES-1:0] path_steps,
+  input  wire [AXES-1:0] path_down,
+  input  wire [AXES-1:0] path_moves,    // the line that runs moves the axis
+  // axes
+  input  wire [AXES-1:0] waits,         // a step waits
+  output wire [AXES-1:0] step_request,
+  output wire [AXES-1:0] directions
+);
+
+  wire [AXES-1:0] went_down;
+  wire [AXES-1:0] step_made;
+  wire            step_down;
+  wire [AXES-1:0] moves;
+  wire [AXES-1:0] owes;
+
+  always @(posedge clk) busy <= ~rst & ((moves | owes | step_made) != {AXES{1'b0}});
+
+  passo_tracker #(
+    .AXES(AXES)
+  ) u_tracker (
+    .clk        (clk),
+    .rst        (rst),
+    .bus_write  (bus_write),
+    .bus_read   (bus_read),
+    .select     (select),
+    .bus_address(bus_address),
+    .bus_bits   (bus_bits),
+    .bus_half   (bus_half),
+    .read_data  (read_data),
+    .halt       (halt),
+    .zero       (zero),
+    .brake      (brake),
+    .hold       (hold),
+    .path_down  (went_down),
+    .step_made  (step_made),
+    .step_down  (step_down),
+    .moves      (moves)
+  );
+
+  genvar axis;
+  generate
+    for (axis = 0; axis < AXES; axis = axis + 1) begin : g_axis
+      passo_tracker_join u_join (
+        .clk         (clk),
+        .rst         (rst),
+        .halt        (halt),
+        .made        (step_made[axis]),
+        .made_down   (step_down),
+        .path_step   (path_steps[axis]),
+        .path_down   (path_down[axis]),
+        .path_moves  (path_moves[axis]),
+        .waits       (waits[axis]),
+        .step_request(step_request[axis]),
+        .direction   (directions[axis]),
+        .owes        (owes[axis]),
+        .went_down   (went_down[axis])
+      );
+    end
+  endgenerate
+
+endmodule
+`resetall

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// Several files: which of them are programs, and in which order.
+"use strict";
+
+const OF_SUBROUTINES = /^\/?(?:n[0-9]+)?o(?:<([^>]*)>|([0-9]+))(sub|endsub)/;
+const ENDS_FILE = /^\/?(?:n[0-9]+)?m0*(?:2|30)$/;
+
+// Whether a file has nothing but subroutines, one of which has its name: another file calls it (sim/passo/expand/expander.py).
+function hasOnlySubroutines({ name, text }) {
+    let inside = false, own = false;
+    for (const line of text.split(/\r\n|\r|\n/)) {
+        const bare = Advice.bare(line), [, named, numbered, keyword] = OF_SUBROUTINES.exec(bare) ?? [];
+        own ||= keyword === "sub" && name === `${named ?? numbered}.ngc`;
+        if (keyword) inside = keyword === "sub";
+        else if (!inside && bare && !ENDS_FILE.test(bare)) return false;
+    }
+    return own;
+}
+
+// Files in the order of their names, with those marked that play.
+function inTurn(files) {
+    const sorted = [...files].sort((one, other) => (one.name < other.name ? -1 : 1));
+    const playing = sorted.filter(file => !hasOnlySubroutines(file));
+    return sorted.map(file => ({ ...file, plays: !playing.length || playing.includes(file) }));
+}

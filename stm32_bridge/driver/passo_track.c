@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: MIT
+ * Trackers: limits, targets, readings.
+ */
+#include "passo_driver.h"
+#include "passo_math.h"
+
+enum passo_error passo_driver_untrack(struct passo *passo, uint8_t axes)
+{
+	uint32_t word;
+
+	if (!passo->has_trackers)
+		return PASSO_OK;
+	enum passo_error error =
+	    passo_host_read(passo->host, (uint16_t)(passo->base + PASSO_CHANNEL_TRACKER_STATE), &word, 1);
+	word = passo_unpack_channel_tracker_state(word).enabled & ~(uint32_t)axes;
+	return error != PASSO_OK ? error : passo_driver_write(passo, PASSO_CHANNEL_TRACKER_ENABLE, &word, 1);
+}
+
+#ifndef PASSO_WITHOUT_TRACKERS
+
+static enum passo_error check_axis(const struct passo *passo, uint8_t axis)
+{
+	enum passo_error error = passo_driver_check_axis(passo, axis);
+
+	return error == PASSO_OK && !passo->has_trackers ? PASSO_ERROR_NO_TRACKERS : error;
+}
+
+static enum passo_error check(const struct passo *passo, const struct passo_track *track)
+{
+	return track ? check_axis(passo, track->axis) : PASSO_ERROR_ARGUMENT_POINTER;
+}
+
+enum passo_error passo_configure_tracker(struct passo *passo, const struct passo_track *track)
+{
+	enum passo_error error = check(passo, track);
+
+	if (error != PASSO_OK)
+		return error;
+	const uint32_t tick = PASSO_TRACKER_TICK(passo->machine.axes), clock_hz = passo->machine.clock_hz;
+	const uint64_t speed = passo_mul_div(track->top_speed, tick, clock_hz);
+	const uint64_t acceleration =
+	    passo_mul_div(passo_mul_div(track->acceleration, tick, clock_hz), tick, clock_hz);
+	if (speed > UINT32_MAX || acceleration == 0u || acceleration > speed)
+		return PASSO_ERROR_TRACKER_LIMITS;
+	const uint32_t words[] = {(uint32_t)speed, (uint32_t)acceleration};
+	return passo_driver_moving(passo_driver_write(passo,
+	    (uint16_t)(PASSO_CHANNEL_AXIS_BASE + track->axis * PASSO_CHANNEL_AXIS_STRIDE
+	               + PASSO_AXIS_TRACKER_SPEED),
+	    words, 2));
+}
+
+enum passo_error passo_track_to(struct passo *passo, const struct passo_track *track, int32_t target)
+{
+	enum passo_error error = check(passo, track);
+
+	if (error != PASSO_OK)
+		return error;
+	const uint32_t up = (uint32_t)target, down = up - track->backlash;
+	uint32_t enabled;
+	error =
+	    passo_driver_write(passo, (uint16_t)(PASSO_CHANNEL_TRACKER_TARGET_BASE + track->axis), &up, 1);
+	if (error == PASSO_OK)
+		error = passo_driver_write(
+		    passo, (uint16_t)(PASSO_CHANNEL_TRACKER_TARGET_DOWN_BASE + track->axis), &down, 1);
+	if (error == PASSO_OK)
+		error = passo_host_read(
+		    passo->host, (uint16_t)(passo->base + PASSO_CHANNEL_TRACKER_STATE), &enabled, 1);
+	if (error != PASSO_OK)
+		return error;
+	enabled = passo_unpack_channel_tracker_state(enabled).enabled | 1u << track->axis;
+	return passo_driver_write(passo, PASSO_CHANNEL_TRACKER_ENABLE, &enabled, 1);
+}
+
+enum passo_error passo_untrack(struct passo *passo, uint8_t axis)
+{
+	enum passo_error error = check_axis(passo, axis);
+
+	return error == PASSO_OK ? passo_driver_untrack(passo, (uint8_t)(1u << axis)) : error;
+}
+
+enum passo_error passo_read_tracker(struct passo *passo, uint8_t axis, struct passo_track_reading *reading)
+{
+	enum passo_error error = check_axis(passo, axis);
+	uint32_t position, word;
+
+	if (error == PASSO_OK && !reading)
+		error = PASSO_ERROR_ARGUMENT_POINTER;
+	if (error == PASSO_OK)
+		error = passo_host_read(passo->host,
+		    (uint16_t)(passo->base + PASSO_CHANNEL_TRACKER_POSITION_BASE + axis), &position, 1);
+	if (error == PASSO_OK)
+		error = passo_host_read(
+		    passo->host, (uint16_t)(passo->base + PASSO_CHANNEL_TRACKER_STATE), &word, 1);
+	if (error != PASSO_OK)
+		return error;
+	const struct passo_channel_tracker_state state = passo_unpack_channel_tracker_state(word);
+	*reading = (struct passo_track_reading){.position = (int32_t)position,
+	    .enabled = (state.enabled >> axis & 1u) != 0u,
+	    .moves = (state.moves >> axis & 1u) != 0u,
+	    .at_target = (state.at_target >> axis & 1u) != 0u};
+	return PASSO_OK;
+}
+
+#endif

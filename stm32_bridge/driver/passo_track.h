@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: MIT
+ * Trackers of a core that was built with them: a second hand on every axis, beside the path or without one.
+ *
+ * The steps of a tracker add to those of the path: the axis is at the sum. Positions of the driver are those
+ * of the path alone. A stop of any cause, passo_zero() and passo_open() end all trackers; each goes on with
+ * its next target. See docs/machine.md. Every call can also return NO_TRACKERS and the errors common to the
+ * calls of passo.h.
+ */
+#ifndef PASSO_DRIVER_TRACK_H
+#define PASSO_DRIVER_TRACK_H
+
+#include "passo.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The clocks of a tick of the trackers: they make at most one step in it. */
+#define PASSO_TRACKER_TICK(axes) ((axes) > 4u ? 256u : 128u)
+
+struct passo_track {
+	uint8_t axis;
+	uint16_t backlash;     /* steps that the axis goes back further where its path turns down; else 0 */
+	uint64_t top_speed;    /* UQ32.32 steps/s, below a step per tick */
+	uint64_t acceleration; /* UQ32.32 steps/s^2, at most top_speed in a tick */
+};
+
+/* Sets the limits of a tracker, rounded down to 2^-32 steps per tick (per tick). At rest or stopped. A frame.
+ * Errors: TRACKER_LIMITS, MOVING. */
+enum passo_error passo_configure_tracker(struct passo *passo, const struct passo_track *track);
+/* Sends it to a target, in steps of its own since passo_zero(), at any time. Four frames. */
+enum passo_error passo_track_to(struct passo *passo, const struct passo_track *track, int32_t target);
+/* Slows it down; it rests until its next target. Two frames. */
+enum passo_error passo_untrack(struct passo *passo, uint8_t axis);
+
+struct passo_track_reading {
+	int32_t position; /* steps of the tracker; after a hard stop up to 7 of them were not made */
+	bool enabled;     /* it follows its target */
+	bool moves;
+	bool at_target; /* since the last tick: ask 256 clocks after passo_track_to() */
+};
+/* Two frames. */
+enum passo_error passo_read_tracker(struct passo *passo, uint8_t axis, struct passo_track_reading *reading);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: MIT
+"""Trackers of the driver (stm32_bridge/driver/passo_track.h): a second hand beside moves and stops."""
+
+import random
+from typing import Any
+
+import pytest
+from passo.build import Parameters
+from passo.driver import Driver
+from passo.registers import Cause, State
+
+from tests.helpers.driver_wire import Q32, Wire, by_speed, error_of, open_driver, struct
+from tests.helpers.random_plans import SEED
+
+PARAMETERS = Parameters(trackers=1, inputs=1)
+SPEED, ACCELERATION = 50_000, 5_000_000  # steps/s, steps/s^2
+HARD_STOP_DROPS = 7  # steps of a tracker that were not made, at most
+
+
+def track(axis: int = 0, backlash: int = 0, speed: int = SPEED, acceleration: int = ACCELERATION) -> Any:
+    """The limits of a tracker."""
+    return struct(
+        "track", axis=axis, backlash=backlash, top_speed=speed * Q32, acceleration=acceleration * Q32
+    )
+
+
+def machine() -> tuple[Driver, Wire]:
+    """An open driver."""
+    wire = Wire(PARAMETERS)
+    driver = open_driver(wire)
+    driver.call("configure_motion", wire.clock_hz // 1000, wire.clock_hz // 1000, 0)
+    return driver, wire
+
+
+def finish(driver: Driver, wire: Wire) -> None:
+    """Poll until the path has ended; with trackers a poll may be two frames."""
+    end = wire.clock + 2 * wire.clock_hz
+    while driver.is_moving:
+        assert wire.clock < end, "it does not end"
+        driver.poll()
+        wire.run(wire.clock_hz // 5000)
+
+
+def reading(driver: Driver, axis: int = 0) -> Any:
+    """What the tracker of an axis does."""
+    read = struct("track_reading")
+    driver.call("read_tracker", axis, read)
+    return read
+
+
+def settle(driver: Driver, wire: Wire, axis: int = 0) -> None:
+    """Wait until it is at its target."""
+    for _ in range(1000):
+        wire.run(wire.clock_hz // 10_000)
+        read = reading(driver, axis)
+        if read.at_target and not read.moves:
+            wire.run(wire.clock_hz // 10_000)
+            return
+    pytest.fail("the tracker does not arrive")
+
+
+def test_an_axis_is_at_the_sum_of_both_hands() -> None:
+    """Moves go where they would go without the tracker; positions are those of the path."""
+    driver, wire = machine()
+    rng = random.Random(f"trackers {SEED}")
+    tracks = [track(axis) for axis in range(4)]
+    for one in tracks:
+        driver.call("configure_tracker", one)
+    at, targets = [0] * 4, [0] * 4
+    for _ in range(15):
+        steps = [rng.randint(-400, 400) for _ in range(4)]
+        driver.call("move_by_speed", by_speed(steps))
+        at = [was + step for was, step in zip(at, steps, strict=True)]
+        for _ in range(3):
+            axis = rng.randrange(4)
+            targets[axis] = rng.randint(-100, 100)
+            driver.call("track_to", tracks[axis], targets[axis])
+            wire.run(rng.randrange(20_000))
+            driver.poll()
+        finish(driver, wire)
+        for axis in range(4):
+            settle(driver, wire, axis)
+        assert list(driver.positions()) == at
+        assert [reading(driver, axis).position for axis in range(4)] == targets
+        assert wire.counted()[1] == [a + b for a, b in zip(at, targets, strict=True)]
+
+
+def test_backlash_is_taken_up_where_the_path_turns() -> None:
+    """The screw is where the path is, to the step, after each turn."""
+    driver, wire = machine()
+    one = track(backlash=12)
+    driver.call("configure_tracker", one)
+    driver.call("track_to", one, 0)
+    at = 0
+    for steps, back in ((300, 0), (-200, 12), (-50, 12), (70, 0), (-1, 12)):
+        driver.call("move_by_speed", by_speed([steps, 5 * steps, 0, 0]))
+        finish(driver, wire)
+        settle(driver, wire)
+        at += steps
+        assert wire.counted()[1][0] == at - back
+        assert driver.positions()[0] == at
+
+
+@pytest.mark.parametrize("hard", [False, True], ids=["soft", "hard"])
+def test_a_stop_ends_both_hands(hard: bool) -> None:
+    """Nothing moves until the tracker gets its next target."""
+    driver, wire = machine()
+    one = track()
+    driver.call("configure_tracker", one)
+    driver.call("move_by_speed", by_speed([0, 20_000, 0, 0], speed=20_000))
+    driver.call("track_to", one, 5000)
+    wire.run(wire.clock_hz // 50)
+    driver.call("abort" if hard else "stop")
+    for _ in range(200):
+        wire.run(wire.clock_hz // 10_000)
+        driver.poll()
+    state = driver.snapshot()
+    assert (state.state, state.cause) == (State.STOPPED, Cause.ABORT if hard else Cause.STOP)
+    stopped = wire.counted()[1]
+    assert 100 < stopped[0] < 5000
+    assert not reading(driver).enabled
+    driver.call("clear")
+    wire.run(wire.clock_hz // 10)
+    assert wire.counted()[1] == stopped
+    off = abs(reading(driver).position - stopped[0])
+    assert off <= (HARD_STOP_DROPS if hard else 1)
+    before = reading(driver).position
+    driver.call("track_to", one, 200)
+    settle(driver, wire)
+    assert wire.counted()[1][0] - stopped[0] == pytest.approx(200 - before, abs=1)
+
+
+def test_a_new_session_finds_no_tracker_that_moves() -> None:
+    """One of the session before slows down; the next one starts where it rests."""
+    driver, wire = machine()
+    one = track()
+    driver.call("configure_tracker", one)
+    driver.call("track_to", one, 1_000_000)
+    wire.run(wire.clock_hz // 50)
+    other = open_driver(wire)
+    wire.run(wire.clock_hz // 10)
+    rested = wire.counted()[1][0]
+    wire.run(wire.clock_hz // 10)
+    assert wire.counted()[1][0] == rested > 100
+    assert not reading(other).enabled
+    other.call("move_by_speed", by_speed([100, 0, 0, 0]))
+    finish(other, wire)
+    assert wire.counted()[1][0] == rested + 100
+
+
+def test_a_switch_stops_a_tracker() -> None:
+    """No step toward it; the other way is free."""
+    driver, wire = machine()
+    config = struct("input_config")
+    driver.call("configure_inputs", 0, config)
+    one = track()
+    driver.call("configure_tracker", one)
+    driver.call("track_to", one, 3000)
+    wire.run(wire.clock_hz // 50)
+    wire.engine.set("limit_high", 1)
+    wire.run(200)
+    at = wire.counted()[1][0]
+    wire.run(wire.clock_hz // 50)
+    assert wire.counted()[1][0] == at
+    assert error_of(driver, "poll") == "LIMIT"
+    driver.call("clear")
+    driver.call("track_to", one, 4000)
+    wire.run(wire.clock_hz // 50)
+    assert wire.counted()[1][0] == at
+    driver.call("clear")
+    driver.call("track_to", one, 0)
+    settle(driver, wire)
+    assert wire.counted()[1][0] < at - 100
+
+
+def test_what_a_tracker_cannot_do_is_refused() -> None:
+    """By name, and nothing moves."""
+    driver, wire = machine()
+    assert error_of(driver, "configure_tracker", track(acceleration=0)) == "TRACKER_LIMITS"
+    assert error_of(driver, "configure_tracker", track(speed=wire.clock_hz // 128)) == "TRACKER_LIMITS"
+    assert error_of(driver, "configure_tracker", track(speed=1, acceleration=1 << 31)) == "TRACKER_LIMITS"
+    assert error_of(driver, "configure_tracker", track(axis=4)) == "ARGUMENT"
+    assert error_of(driver, "track_to", track(axis=4), 5) == "ARGUMENT"
+    driver.call("configure_tracker", track())
+    driver.call("track_to", track(), 1000)
+    wire.run(wire.clock_hz // 1000)
+    assert error_of(driver, "configure_tracker", track()) == "MOVING"
+    wire.run(wire.clock_hz // 10)
+    driver.call("configure_tracker", track())
+    plain = open_driver(Wire(Parameters()))
+    assert error_of(plain, "track_to", track(), 5) == "NO_TRACKERS"
+    assert wire.counted()[1] == [1000, 0, 0, 0]
