@@ -292,7 +292,9 @@ module passo_core #(
 
   generate
     if (INPUTS != 0) begin : g_machine
-      passo_machine u_machine (
+      passo_machine #(
+        .TICK_LOG2(TICK_LOG2)
+      ) u_machine (
         .clk           (clk),
         .rst           (rst),
         .bus_write     (bus_write),
@@ -302,6 +304,7 @@ module passo_core #(
         .read_data     (machine_read_data),
         .estop_n       (estop_n),
         .moving        (moving != {CHANNELS{1'b0}}),
+        .slew_tick     (slew_tick),
         .tick          (filter_tick),
         .filter        (filter),
         .write_filter  (write_filter),

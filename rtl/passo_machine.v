@@ -6,7 +6,9 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-module passo_machine (
+module passo_machine #(
+  parameter TICK_LOG2 = 7  // clocks of a slew tick
+) (
   input  wire        clk,
   input  wire        rst,
   // bus
@@ -19,7 +21,8 @@ module passo_machine (
   input  wire        estop_n,
   // channels
   input  wire        moving,         // a motion runs
-  output reg         tick,
+  input  wire        slew_tick,      // every 2^TICK_LOG2 clocks
+  output wire        tick,
   output reg  [15:0] filter,
   output wire        write_filter,   // strobe: `filter` changes with the next clock
   output wire        pressed,        // asynchronous: take all enables away
@@ -47,16 +50,18 @@ module passo_machine (
     read_estop <= bus_read && known && number == ADDRESS_ESTOP[1:0];
   end
 
-  // Filter: it describes the machine and is kept over a reset.
+  // Filter: it describes the machine and is kept over a reset. The count goes down to 0, and what enables it selects
+  // what it takes, so that each bit is one LUT.
   reg  [15:0] count;
-  wire        ends = count == filter;
+  reg         begins;  // a period, of a new filter
+  wire        runs = count != 16'd0 && !begins;
+
+  assign tick = count == 16'd0 && !begins;
 
   always @(posedge clk) begin
-    tick  <= ends & ~write_filter;
-    count <= count + 16'd1;
-    if (ends || write_filter || rst) count <= 16'd0;
+    count  <= runs ? count + {16{runs}} : filter;
+    begins <= write_filter | rst;
     if (write_filter && !rst) filter <= bus_data[15:0];
-    if (rst) tick <= 1'b0;
   end
 
   initial filter = INPUT_FILTER_FILTER_RESET;
@@ -70,9 +75,12 @@ module passo_machine (
     .stop   (estop)
   );
 
-  passo_watchdog u_watchdog (
+  passo_watchdog #(
+    .UNIT_LOG2(16 - TICK_LOG2)
+  ) u_watchdog (
     .clk           (clk),
     .rst           (rst),
+    .tick          (slew_tick),
     .write         (write_watchdog),
     .bus_data      (bus_data),
     .feed          (bus_write | bus_read),

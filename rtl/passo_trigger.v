@@ -42,7 +42,7 @@ module passo_trigger #(
   reg [ 1:0] action;
   reg [ 1:0] stale;  // clocks until `picked` is that of the source
   reg        picked;
-  reg [15:0] count;
+  reg [15:0] count;  // clocks that `filter` still demands
 
   // The source among those of all axes: as many bits of `axis` as there are axes, and of `source` the lower two, which
   // tell all but limit_low and index.
@@ -63,16 +63,10 @@ module passo_trigger #(
 
   wire differs = picked ^ level;
   wire counts = armed ? differs : arming & ~differs;  // an edge that may be one; a level that may be known
-  // Kept: a LUT for two bits.
-  (* keep *)
-  wire [7:0] lacks;  // up to the filter
-  genvar pair;
-  generate
-    for (pair = 0; pair < 8; pair = pair + 1) begin : g_lacks
-      assign lacks[pair] = count[pair*2+:2] != filter[pair*2+:2];
-    end
-  endgenerate
-  wire accepts = counts & (lacks == 8'd0) & (stale == 2'd0);
+  // The count goes down to 0, and what enables it selects what it takes, so that each bit is one LUT.
+  wire is_last = count == 16'd0;
+  wire accepts = counts & is_last & (stale == 2'd0);
+  wire runs = counts & ~is_last & (stale == 2'd0);
   wire fires = accepts & armed & (level == falling);
 
   assign hard_stop   = latch && action == TRIGGER_ACTION_HARD_STOP;
@@ -86,7 +80,7 @@ module passo_trigger #(
     arming <= forget ? arming | (armed & ~fires) : arming & ~accepts;
     armed  <= ~forget & ((armed & ~fires) | (arming & accepts));
     fired  <= fired | fires;
-    count  <= !counts || accepts || stale != 2'd0 ? 16'd0 : count + 16'd1;
+    count  <= runs ? count + {16{runs}} : filter;
     if (accepts || !armed) level <= picked;
     if (write) begin
       source  <= bus_data[CHANNEL_TRIGGER_SOURCE_LSB+:CHANNEL_TRIGGER_SOURCE_BITS];

@@ -16,7 +16,7 @@ from passo.build import Parameters
 from passo.host import RATE_ONE, Channel
 from passo.link import Link, RefusedError
 from passo.moves import PinTiming
-from passo.registers import State
+from passo.registers import Cause, State
 
 from tests.helpers.closed_form import COSINE, HALF, ONE, SIGMOID, Line, Ramp
 from tests.helpers.core_player import PlayerPair
@@ -202,3 +202,32 @@ def test_reads_are_jumped_through() -> None:
         pair.run(pair.rng.choice([1, 7, 100]))
     assert 5 < refused < 55
     assert pair.skipped > pair.clock * 0.7
+
+
+@pytest.mark.parametrize("tick_log2", [7, 16])
+def test_the_watchdog_is_jumped_to(tick_log2: int) -> None:
+    """It stops a motion, disables the drives, and stops one that begins later, on the same clocks."""
+    parameters = Parameters(channels=1, axes=1, tick_log2=tick_log2, inputs=1)
+    pair = PlayerPair(parameters, random.Random(SEED))
+    link = Link(pair)
+    channel = Channel(link, parameters)
+    link.write(channel.axis_base(0) + r.AXIS_ENABLE, 1)
+    link.write(channel.base + r.CHANNEL_STOP_SLEW, RATE_ONE)
+
+    def jog() -> None:
+        channel.push_lines([to_line(Line(1000, (999,), endless=True))])
+        channel.push_ramps([to_ramp(Ramp(SLOW // 100, ticks)) for ticks in (0, 10_000)])
+
+    jog()
+    channel.start()
+    link.write(r.ADDRESS_WATCHDOG, r.WatchdogWord(stop_after=2, disable_after=1).pack())
+    pair.run(6 << 16)
+    assert channel.state().state == State.STOPPED and channel.state().cause == Cause.WATCHDOG
+    channel.clear()
+    link.write(r.ADDRESS_RUN, 1 << 8 | 1)
+    jog()
+    pair.run(3 << 16)  # armed, and silent
+    pair.sync(True)
+    pair.run(4 << 16)
+    assert channel.state().state == State.STOPPED and channel.state().cause == Cause.WATCHDOG
+    assert pair.skipped > pair.clock * 0.8

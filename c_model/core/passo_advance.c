@@ -89,11 +89,16 @@ static uint64_t rest_quiet(
 {
 	const uint32_t tick = 1u << core->parameters.tick_log2;
 	const uint64_t clocks_to_slew = core->slew_tick ? 0u : tick - core->slew_count;
+	const struct passo_machine_wires machine_wires = {
+	    .tick_log2 = core->parameters.tick_log2,
+	    .moving = passo_core_any_moving(core),
+	    .slew_tick = core->slew_tick,
+	};
 	uint64_t clocks = limit;
 
 	if (core->parameters.inputs != 0u)
 		clocks = passo_advance_least(
-		    clocks, passo_machine_quiet(&core->machine, inputs, passo_core_any_moving(core)));
+		    clocks, passo_machine_quiet(&core->machine, inputs, &machine_wires, clocks_to_slew));
 	for (unsigned i = 0; i < core->parameters.channels && clocks != 0u; i++) {
 		const struct passo_channel_inputs channel_inputs = inputs_of(core, i, inputs);
 		const struct passo_channel *channel = &core->channel[i];
@@ -120,7 +125,10 @@ static void skip_channels(struct passo_core *core, unsigned moving, uint64_t clo
 static void skip_rest(struct passo_core *core, uint64_t clocks)
 {
 	const uint32_t tick = 1u << core->parameters.tick_log2;
+	const uint64_t slew_ticks = (core->slew_tick ? 1u : 0u) + (core->slew_count + clocks - 1u) / tick;
 
+	if (core->parameters.inputs != 0u)
+		passo_machine_skip(&core->machine, clocks, slew_ticks);
 	core->slew_tick = (core->slew_count + clocks - 1u) % tick == tick - 1u;
 	core->slew_count = (uint32_t)((core->slew_count + clocks) % tick);
 	/* a skipped slew tick may still be in progress */
@@ -128,8 +136,6 @@ static void skip_rest(struct passo_core *core, uint64_t clocks)
 		if (core->channel[i].motion.state == PASSO_STATE_RUN && core->slew_count <= SLEW_CLOCKS
 		    && core->slew_count <= clocks)
 			core->channel[i].timescale.after = (uint8_t)core->slew_count;
-	if (core->parameters.inputs != 0u)
-		passo_machine_skip(&core->machine, clocks);
 	core->tables.slot = (uint8_t)((core->tables.slot + clocks) % (2u * core->parameters.channels));
 }
 

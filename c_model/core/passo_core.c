@@ -193,7 +193,11 @@ static void clock_all(struct passo_core *core, const struct passo_inputs *inputs
 	    .machine = &core->machine,
 	};
 	const bool irq = passo_registers_any_stopped(core);
-	const bool moving = passo_core_any_moving(core);
+	const struct passo_machine_wires machine_wires = {
+	    .tick_log2 = parameters->tick_log2,
+	    .moving = passo_core_any_moving(core),
+	    .slew_tick = core->slew_tick,
+	};
 	const struct passo_registers registers = core->registers;
 	const uint32_t reply_word = core->link.reply_word;
 
@@ -207,7 +211,7 @@ static void clock_all(struct passo_core *core, const struct passo_inputs *inputs
 		passo_channel_clock(&core->channel[i], &channel_inputs);
 	}
 	if (parameters->inputs != 0u)
-		passo_machine_clock(&core->machine, &bus, inputs, moving);
+		passo_machine_clock(&core->machine, &bus, inputs, &machine_wires);
 	passo_link_clock(&core->link, &link_wires);
 	passo_spi_clock(&core->spi, core->inputs.spi_sclk, inputs->spi_sclk, inputs->spi_mosi,
 	    inputs->spi_cs_n, reply_word);

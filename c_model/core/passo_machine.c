@@ -5,12 +5,11 @@
 #include "passo_model.h"
 #include "passo_words.h"
 
-static const uint32_t UNIT_CLOCKS = 0x10000; /* of the watchdog, and how many of them it counts */
-static const uint32_t UNITS = 1024;
+static const unsigned UNIT_LOG2 = 16; /* clocks of a unit of the watchdog, which counts up to 1023 of them */
 
 void passo_machine_reset(struct passo_machine_unit *machine)
 {
-	*machine = (struct passo_machine_unit){.watchdog_fed = true};
+	*machine = (struct passo_machine_unit){.watchdog_holds = true};
 }
 
 void passo_machine_restart(struct passo_machine_unit *machine, const struct passo_machine_unit *before)
@@ -35,34 +34,46 @@ static void clock_estop(struct passo_machine_unit *machine, bool estop_n, bool c
 	machine->estop_seen = (uint8_t)((machine->estop_seen << 1 | (pressed ? 1 : 0)) & 3);
 }
 
-static void clock_watchdog(struct passo_machine_unit *machine, bool feed, bool moving)
+static uint32_t unit_ticks(unsigned tick_log2)
 {
-	const uint16_t stop_after = machine->watchdog_stop_after;
-	const uint16_t disable_after = machine->watchdog_disable_after;
-	const bool fed = machine->watchdog_fed, stop = machine->watchdog_stop;
-	const bool over = machine->watchdog_count == (stop ? disable_after : stop_after);
-	const bool trips = machine->watchdog_silent && moving && !stop;
+	return 1u << (UNIT_LOG2 - tick_log2);
+}
 
-	machine->watchdog_fed = feed;
-	machine->watchdog_unit = (machine->watchdog_unit + 1u) % UNIT_CLOCKS;
-	if (machine->watchdog_unit == 0u)
-		machine->watchdog_count = (uint16_t)((machine->watchdog_count + 1u) % UNITS);
-	if (over && stop_after != 0u)
-		machine->watchdog_silent = true;
-	if (over && stop && disable_after != 0u)
-		machine->watchdog_disable = true;
-	if (trips)
-		machine->watchdog_stop = true;
-	if (fed)
-		machine->watchdog_silent = machine->watchdog_stop = machine->watchdog_disable = false;
-	if (fed || trips) {
+static uint16_t wanted(const struct passo_machine_unit *machine)
+{
+	return machine->watchdog_stop ? machine->watchdog_disable_after : machine->watchdog_stop_after;
+}
+
+static bool is_over(const struct passo_machine_unit *machine, unsigned tick_log2)
+{
+	return machine->watchdog_count / unit_ticks(tick_log2) == wanted(machine);
+}
+
+static bool may_trip(const struct passo_machine_unit *machine, bool moving)
+{
+	return machine->watchdog_silent && moving && !machine->watchdog_stop;
+}
+
+static void clock_watchdog(
+    struct passo_machine_unit *machine, bool feed, const struct passo_machine_wires *wires)
+{
+	const bool over = is_over(machine, wires->tick_log2), stop = machine->watchdog_stop;
+	const bool ends = over && !machine->watchdog_holds;
+	const bool trips = may_trip(machine, wires->moving) && wires->slew_tick;
+
+	if (wires->slew_tick && !machine->watchdog_holds)
+		machine->watchdog_count =
+		    (machine->watchdog_count + 1u) % (1024u * unit_ticks(wires->tick_log2));
+	machine->watchdog_holds = over || feed || trips;
+	machine->watchdog_silent = (machine->watchdog_silent || ends) && !feed;
+	machine->watchdog_stop = (stop || trips) && !feed;
+	machine->watchdog_disable = (machine->watchdog_disable || (ends && stop)) && !feed;
+	if (feed || trips)
 		machine->watchdog_count = 0;
-		machine->watchdog_unit = 0;
-	}
 }
 
 void passo_machine_clock(struct passo_machine_unit *machine, const struct passo_bus *bus,
-    const struct passo_inputs *inputs, bool moving)
+    const struct passo_inputs *inputs, const struct passo_machine_wires *wires)
 {
 	const bool clears = bus->write && bus->address == PASSO_ADDRESS_ESTOP_CLEAR && (bus->data & 1u) != 0u;
 	const bool ends = machine->count == machine->filter;
@@ -71,7 +82,7 @@ void passo_machine_clock(struct passo_machine_unit *machine, const struct passo_
 	machine->tick = ends && !writes_filter;
 	machine->count = ends || writes_filter ? 0u : (uint16_t)(machine->count + 1u);
 	clock_estop(machine, inputs->estop_n, clears || inputs->rst);
-	clock_watchdog(machine, bus->write || bus->read, moving);
+	clock_watchdog(machine, bus->write || bus->read, wires);
 	if (writes_filter && !inputs->rst)
 		machine->filter = (uint16_t)bus->data;
 	if (bus->write && bus->address == PASSO_ADDRESS_WATCHDOG) {
@@ -81,40 +92,37 @@ void passo_machine_clock(struct passo_machine_unit *machine, const struct passo_
 	}
 }
 
-/* Clocks until the watchdog acts. */
-static uint64_t watchdog_quiet(const struct passo_machine_unit *machine)
+/* Clocks until the one on which the watchdog acts. */
+static uint64_t watchdog_quiet(const struct passo_machine_unit *machine,
+    const struct passo_machine_wires *wires, uint64_t clocks_to_slew)
 {
-	const bool stop = machine->watchdog_stop;
-	const uint16_t wanted = stop ? machine->watchdog_disable_after : machine->watchdog_stop_after;
-	const bool done = stop ? machine->watchdog_disable : machine->watchdog_silent;
-	const uint64_t clocks = (uint64_t)machine->watchdog_count * UNIT_CLOCKS + machine->watchdog_unit;
-	const uint64_t end = (uint64_t)wanted * UNIT_CLOCKS;
+	const bool over = is_over(machine, wires->tick_log2);
+	const uint32_t end = wanted(machine) * unit_ticks(wires->tick_log2);
 
-	if (wanted == 0u || done)
-		return UINT64_MAX;
-	return clocks < end ? end - clocks : 0u;
+	if (machine->watchdog_holds != over)
+		return 0;
+	if (may_trip(machine, wires->moving))
+		return clocks_to_slew;
+	return over ? UINT64_MAX
+	            : clocks_to_slew + ((uint64_t)(end - machine->watchdog_count - 1u) << wires->tick_log2);
 }
 
-uint64_t passo_machine_quiet(
-    const struct passo_machine_unit *machine, const struct passo_inputs *inputs, bool moving)
+uint64_t passo_machine_quiet(const struct passo_machine_unit *machine, const struct passo_inputs *inputs,
+    const struct passo_machine_wires *wires, uint64_t clocks_to_slew)
 {
 	const bool pressed = machine->estop_pressed;
 	const uint8_t seen = pressed ? 3u : 0u, released = inputs->estop_n ? 3u : 0u;
-	const bool trips = machine->watchdog_silent && moving && !machine->watchdog_stop;
 
-	if (machine->watchdog_fed || trips || machine->estop_seen != seen
-	    || machine->estop_released != released || (!inputs->estop_n && !pressed))
+	if (machine->estop_seen != seen || machine->estop_released != released
+	    || (!inputs->estop_n && !pressed))
 		return 0;
-	return watchdog_quiet(machine);
+	return watchdog_quiet(machine, wires, clocks_to_slew);
 }
 
-void passo_machine_skip(struct passo_machine_unit *machine, uint64_t clocks)
+void passo_machine_skip(struct passo_machine_unit *machine, uint64_t clocks, uint64_t slew_ticks)
 {
-	const uint64_t silence =
-	    (uint64_t)machine->watchdog_count * UNIT_CLOCKS + machine->watchdog_unit + clocks;
-
-	machine->watchdog_count = (uint16_t)(silence / UNIT_CLOCKS % UNITS);
-	machine->watchdog_unit = (uint32_t)(silence % UNIT_CLOCKS);
+	if (!machine->watchdog_holds)
+		machine->watchdog_count += (uint32_t)slew_ticks;
 	machine->count = (uint16_t)((machine->count + clocks) % (machine->filter + 1u));
 	machine->tick = machine->count == 0u;
 }

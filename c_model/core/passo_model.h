@@ -355,9 +355,14 @@ struct passo_machine_unit {
 	bool estop_pressed;
 	uint8_t estop_released, estop_seen; /* 2 bits */
 	uint16_t watchdog_stop_after, watchdog_disable_after;
-	uint16_t watchdog_count;
-	uint32_t watchdog_unit;
-	bool watchdog_fed, watchdog_silent, watchdog_stop, watchdog_disable;
+	uint32_t watchdog_count; /* slew ticks */
+	bool watchdog_holds, watchdog_silent, watchdog_stop, watchdog_disable;
+};
+
+/* What it sees of the channels and the core. */
+struct passo_machine_wires {
+	unsigned tick_log2;
+	bool moving, slew_tick;
 };
 
 /* What a channel asks its motion, axes and line to do. */
@@ -528,11 +533,11 @@ void passo_machine_reset(struct passo_machine_unit *machine);
 /* Synchronous reset in the clock just simulated, which keeps the filter and an e-stop. */
 void passo_machine_restart(struct passo_machine_unit *machine, const struct passo_machine_unit *before);
 void passo_machine_clock(struct passo_machine_unit *machine, const struct passo_bus *bus,
-    const struct passo_inputs *inputs, bool moving);
-/* Whether there is such a register; the value that it reads as and the verdict on a write. */
-uint64_t passo_machine_quiet(
-    const struct passo_machine_unit *machine, const struct passo_inputs *inputs, bool moving);
-void passo_machine_skip(struct passo_machine_unit *machine, uint64_t clocks);
+    const struct passo_inputs *inputs, const struct passo_machine_wires *wires);
+/* Clocks until more changes than counters; and skipping such clocks, which see this many slew ticks. */
+uint64_t passo_machine_quiet(const struct passo_machine_unit *machine, const struct passo_inputs *inputs,
+    const struct passo_machine_wires *wires, uint64_t clocks_to_slew);
+void passo_machine_skip(struct passo_machine_unit *machine, uint64_t clocks, uint64_t slew_ticks);
 
 struct passo_requests passo_inputs_requests(
     const struct passo_channel *channel, const struct passo_channel_inputs *inputs);

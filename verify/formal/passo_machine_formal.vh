@@ -33,4 +33,7 @@ always @(posedge clk) begin
 end
 
 // --- What the induction relies on
-always @(posedge clk) if (f_started) assert (f_since == count);
+always @(posedge clk) if (f_started) begin
+  assert (begins ? f_since == 16'd0 && !f_due : f_since == (count == 16'd0 ? 16'd0 : filter + 16'd1 - count));
+  assert (f_since <= filter && (begins || (count <= filter && f_due == (f_since == 16'd0))));
+end

@@ -51,16 +51,17 @@ always @(posedge clk)
     if (arming && !$past(arming)) arming_for_a_reason : assert ($past(write || forget));
   end
 
+wire [15:0] f_count = filter - count;  // clocks counted
 always @(posedge clk)
   if (f_begun && $past(f_begun)) begin
     if (armed || arming) assert (f_was_armed);
-    if (armed) assert (f_run == {1'b0, count} && !fired && !latch && stale == 2'd0);
+    if (armed) assert (f_run == {1'b0, f_count} && !fired && !latch && stale == 2'd0);
     if (latch) assert (f_was_armed);
     if (armed || arming) assert ({1'b0, stale} == (f_age < 3'd3 ? 3'd3 - f_age : 3'd0));
-    if ((armed || arming) && stale == 2'd0) assert (count <= filter);
+    if ((armed || arming) && stale == 2'd0) assert (f_count <= filter);
     if (arming && stale != 2'd3) assert (level == picked_q);
     if (arming && stale == 2'd0) begin
-      assert (f_same == {2'd0, count} + 18'd1 || f_same == {2'd0, count} + 18'd2 || picked != picked_q);
+      assert (f_same == {2'd0, f_count} + 18'd1 || f_same == {2'd0, f_count} + 18'd2 || picked != picked_q);
     end
     if (arming) assert (!fired && !latch);
   end

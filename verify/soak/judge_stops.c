@@ -194,8 +194,9 @@ void judge_silence(struct judge *judge)
 {
 	struct machine *machine = &judge->machine;
 	const uint64_t time = (uint64_t)machine->watchdog << 16;
+	const uint64_t tick = UINT64_C(1) << judge->world->model.parameters.tick_log2;
 	const uint64_t earliest = machine->fed_from + time - SHOWN,
-		       latest = machine->fed_until + time + SHOWN;
+		       latest = machine->fed_until + time + tick + SHOWN;
 
 	if (machine->watchdog == 0u || machine->silent || judge->now <= earliest)
 		return;
