@@ -45,8 +45,6 @@ enum passo_error passo_driver_look(struct passo *passo, bool once);
 enum passo_error passo_driver_look_at_rest(struct passo *passo);
 /* MOVING unless two reads in a row find the channel at rest, or stopped with all steps made. */
 enum passo_error passo_driver_require_rest(struct passo *passo);
-/* Slows down trackers, a bit per axis: they rest until they are enabled again. OK of a core without. */
-enum passo_error passo_driver_untrack(struct passo *passo, uint8_t axes);
 /* Reads the positions of the core that are due to the path, without the offsets. */
 enum passo_error passo_driver_positions(struct passo *passo, int32_t *positions, bool once);
 /* A position of the core as the program counts it. */

@@ -104,8 +104,11 @@ static bool is_kept_stopped(enum passo_error error)
  * must not start. A soft stop flushes it immediately, or stops it if it has just started. */
 static enum passo_error keep_from_beginning(struct passo *passo)
 {
-	enum passo_error error = passo_driver_untrack(passo, 0xFFu);
+	const uint32_t none = 0;
+	enum passo_error error = PASSO_OK;
 
+	if (passo->has_trackers)
+		error = passo_driver_write(passo, PASSO_CHANNEL_TRACKER_ENABLE, &none, 1);
 	if (error == PASSO_OK)
 		error = passo_driver_look_at_rest(passo);
 	if (error != PASSO_OK || passo->snapshot.state > PASSO_STATE_ARMED || passo_driver_at_rest(passo))

@@ -4,18 +4,6 @@
 #include "passo_driver.h"
 #include "passo_math.h"
 
-enum passo_error passo_driver_untrack(struct passo *passo, uint8_t axes)
-{
-	uint32_t word;
-
-	if (!passo->has_trackers)
-		return PASSO_OK;
-	enum passo_error error =
-	    passo_host_read(passo->host, (uint16_t)(passo->base + PASSO_CHANNEL_TRACKER_STATE), &word, 1);
-	word = passo_unpack_channel_tracker_state(word).enabled & ~(uint32_t)axes;
-	return error != PASSO_OK ? error : passo_driver_write(passo, PASSO_CHANNEL_TRACKER_ENABLE, &word, 1);
-}
-
 #ifndef PASSO_WITHOUT_TRACKERS
 
 static enum passo_error check_axis(const struct passo *passo, uint8_t axis)
@@ -28,6 +16,21 @@ static enum passo_error check_axis(const struct passo *passo, uint8_t axis)
 static enum passo_error check(const struct passo *passo, const struct passo_track *track)
 {
 	return track ? check_axis(passo, track->axis) : PASSO_ERROR_ARGUMENT_POINTER;
+}
+
+/* Enables the tracker of an axis, or not; leaves the others. */
+static enum passo_error enable(struct passo *passo, uint8_t axis, bool on)
+{
+	const uint32_t bit = 1u << axis;
+	uint32_t word;
+	enum passo_error error =
+	    passo_host_read(passo->host, (uint16_t)(passo->base + PASSO_CHANNEL_TRACKER_STATE), &word, 1);
+
+	if (error != PASSO_OK)
+		return error;
+	word = passo_unpack_channel_tracker_state(word).enabled;
+	word = on ? word | bit : word & ~bit;
+	return passo_driver_write(passo, PASSO_CHANNEL_TRACKER_ENABLE, &word, 1);
 }
 
 enum passo_error passo_configure_tracker(struct passo *passo, const struct passo_track *track)
@@ -56,26 +59,19 @@ enum passo_error passo_track_to(struct passo *passo, const struct passo_track *t
 	if (error != PASSO_OK)
 		return error;
 	const uint32_t up = (uint32_t)target, down = up - track->backlash;
-	uint32_t enabled;
 	error =
 	    passo_driver_write(passo, (uint16_t)(PASSO_CHANNEL_TRACKER_TARGET_BASE + track->axis), &up, 1);
 	if (error == PASSO_OK)
 		error = passo_driver_write(
 		    passo, (uint16_t)(PASSO_CHANNEL_TRACKER_TARGET_DOWN_BASE + track->axis), &down, 1);
-	if (error == PASSO_OK)
-		error = passo_host_read(
-		    passo->host, (uint16_t)(passo->base + PASSO_CHANNEL_TRACKER_STATE), &enabled, 1);
-	if (error != PASSO_OK)
-		return error;
-	enabled = passo_unpack_channel_tracker_state(enabled).enabled | 1u << track->axis;
-	return passo_driver_write(passo, PASSO_CHANNEL_TRACKER_ENABLE, &enabled, 1);
+	return error == PASSO_OK ? enable(passo, track->axis, true) : error;
 }
 
 enum passo_error passo_untrack(struct passo *passo, uint8_t axis)
 {
 	enum passo_error error = check_axis(passo, axis);
 
-	return error == PASSO_OK ? passo_driver_untrack(passo, (uint8_t)(1u << axis)) : error;
+	return error == PASSO_OK ? enable(passo, axis, false) : error;
 }
 
 enum passo_error passo_read_tracker(struct passo *passo, uint8_t axis, struct passo_track_reading *reading)
