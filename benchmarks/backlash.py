@@ -20,6 +20,7 @@ from passo.engine import model_engine
 from passo.host import Channel, PinTiming
 from passo.link import Link
 from passo.native import ffi
+from passo.output import complete
 
 CLOCK_HZ, TICK = 10_000_000, 128
 STEPS_PER_MM, RADIUS_MM, FEED_MM_S, PLAY_MM = 400, 20, 100, 0.05
@@ -134,7 +135,8 @@ def draw(results: dict[str, Result], path: Path) -> None:
     axes.set_rmin(-1500 * PLAY_MM)
     axes.set_title("distance to the center, off by (µm)")
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.06), ncol=2)
-    figure.savefig(path, dpi=110, bbox_inches="tight")
+    with complete(path) as part:
+        figure.savefig(part, dpi=110, bbox_inches="tight")
 
 
 def main() -> None:
