@@ -38,6 +38,7 @@ architecture rtl of motion_top is
       \INPUTS\          : natural := 0;
       \ENCODERS\        : natural := 0;
       \OUTPUTS\         : natural := 0;
+      \TRACKERS\        : natural := 0;
       \CLOCK_HZ\        : natural := 0; -- the host can read it
       \BUILD\           : natural := 0; -- and this
       \STEP_RESET\      : natural := 0; -- bit channel * \AXES\ + axis
