@@ -114,8 +114,10 @@ def wrapper(machine: MachineFile, chosen: Board, sheet: str, pins: str, top: dic
     joined += [f"    .{name}()" for name in sorted({*out, "led"} - ports.keys())]
     heads = [f"input wire [{width(pin) - 1}:0] {pin.name}" for pin in INPUTS]
     heads += ["input wire clk", *(f"output wire [{count - 1}:0] {name}" for name, count in out.items())]
+    heads.append("output wire spi_miso_enable")  # of the core alone
     declared = ", ".join(f"parameter {name} = 0" for name in Parameters().verilog())
     given = ", ".join(f".{name}({value})" for name, value in top.items())
+    lines.append("  assign spi_miso_enable = 1'b1;")
     lines += [f"  passo_board #({given}) u_board (", ",\n".join(joined), "  );"]
     head = f"module passo_spi_top #({declared}) (\n  {', '.join(heads)}\n);"
     return "\n".join([head, *lines, "endmodule", STUBS])
