@@ -595,7 +595,8 @@ module passo_channel #(
         .busy        (tracking),
         .path_steps  (path_steps),
         .path_down   (path_directions),
-        .path_moves  (line_moves & {AXES{moves_path && rate != 17'd0}}),
+        .line_moves  (line_moves),
+        .path_runs   (moves_path && rate != 17'd0),
         .waits       (waits),
         .step_request(step_request),
         .directions  (directions)

@@ -260,8 +260,13 @@ module passo_tracker #(
   );
 
   // ---- what is found in the sums ----
-  wire sum_is_zero_distance = sum[15:0] == {16{negative & line_q == 3'd1}};
-  reg  parity;  // of the number of steps: the position, rounded to the nearest step
+  // Whether a sum is all 0, or in line 1 all `negative`: three bits at a time, put together one clock later.
+  wire           sign = negative & line_q == 3'd1;
+  wire    [17:0] differs = {2'd0, sum[15:0] ^ {16{sign}}};
+  reg     [ 5:0] same;
+  wire           all_same = &same;
+  reg            parity;  // of the number of steps: the position, rounded to the nearest step
+  integer        k;
 
   always @(posedge clk) begin
     slot         <= slot + 5'd1;
@@ -287,14 +292,15 @@ module passo_tracker #(
       slower <= sum[16] & slow;
     end
     if (line_q == 3'd1) begin
-      there  <= sum_is_zero_distance & (there | word_q == 2'd0);
       behind <= sum[15] ^ negative;
       if (word_q == 2'd1) parity <= second_word[15];
       if (word_q == 2'd2) parity <= parity ^ second_word[0];
     end
     if (line_q == 3'd2) near <= sum[15] ^ negative;
     if (line_q == 3'd4) close <= sum[15] ^ negative;
-    if (line_q == 3'd5) stays_zero <= sum_is_zero_distance & (stays_zero | ~word_q[0]);
+    for (k = 0; k < 6; k = k + 1) same[k] <= differs[k*3+:3] == 3'd0;
+    if (slot >= 5'd6 && slot <= 5'd9) there <= all_same & (there | slot == 5'd6);
+    if (slot == 5'd24 || slot == 5'd25) stays_zero <= all_same & (stays_zero | ~slot[0]);
     if (line_q == 3'd7 && word_q == 2'd1) parity <= parity ^ sum[15];
 
     if (rst) begin

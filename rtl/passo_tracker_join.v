@@ -11,7 +11,7 @@
 // it by at most one step time, and the DIR times where the axis turns. Without steps of a tracker, requests and
 // directions are those of the path. A third waiting step does not wait for the others: if the axis has no room for
 // it, the axis loses it and says so.
-// Latency: path to request 0 clocks.
+// Latency: path to request 0 clocks, a tracker's step 2 clocks.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -37,14 +37,15 @@ module passo_tracker_join (
 
   reg signed [2:0] owed;  // steps of the tracker that wait, signed
   reg              turned;  // the axis went against the path last
+  reg              ready;  // a step may join, decided one clock ago
 
   wire some = owed != 3'd0;
   wire several = owed[2] ? owed[1:0] != 2'd3 : owed[1];  // two or more
   wire many = owed == 3'sd3 || owed == -3'sd3;
   wire against = some & (owed[2] ^ path_down);
   wire cancels = path_step & against;
-  wire may_join = some & ~path_step & (~waits | many);
-  wire joins = may_join & (~against | ~path_moves | several);
+  wire joins = ready & ~path_step;
+  wire may_join = (~waits & ~path_step) | many;
   wire turns = joins ? against : path_step & ~against ? 1'b0 : turned & ~(path_moves & ~some);
 
   assign step_request = (path_step & ~against) | joins;
@@ -55,6 +56,7 @@ module passo_tracker_join (
   wire signed [2:0] more = made ? (made_down ? -3'sd1 : 3'sd1) : 3'sd0;
 
   always @(posedge clk) begin
+    ready  <= some & may_join & (~against | ~path_moves | several) & ~(joins | cancels | made | halt | rst);
     turned <= turns;
     owed   <= owed + done + more;
     if (path_moves) went_down <= path_down;

@@ -29,7 +29,8 @@ module passo_trackers #(
   // path
   input  wire [AXES-1:0] path_steps,
   input  wire [AXES-1:0] path_down,
-  input  wire [AXES-1:0] path_moves,    // the line that runs moves the axis
+  input  wire [AXES-1:0] line_moves,    // the line has steps of the axis
+  input  wire            path_runs,     // the profile runs, and the rate is not 0
   // axes
   input  wire [AXES-1:0] waits,         // a step waits
   output wire [AXES-1:0] step_request,
@@ -42,7 +43,12 @@ module passo_trackers #(
   wire [AXES-1:0] moves;
   wire [AXES-1:0] owes;
 
-  always @(posedge clk) busy <= ~rst & ((moves | owes | step_made) != {AXES{1'b0}});
+  reg path_runs_q;
+
+  always @(posedge clk) begin
+    busy        <= ~rst & ((moves | owes | step_made) != {AXES{1'b0}});
+    path_runs_q <= ~rst & path_runs;
+  end
 
   passo_tracker #(
     .AXES(AXES)
@@ -77,7 +83,7 @@ module passo_trackers #(
         .made_down   (step_down),
         .path_step   (path_steps[axis]),
         .path_down   (path_down[axis]),
-        .path_moves  (path_moves[axis]),
+        .path_moves  (line_moves[axis] & path_runs_q),
         .waits       (waits[axis]),
         .step_request(step_request[axis]),
         .direction   (directions[axis]),

@@ -33,6 +33,7 @@ struct passo_tracker_axis {
 struct passo_tracker_join {
 	int8_t owed;
 	bool turned, went_down;
+	bool ready; /* decided one clock ago */
 };
 
 /* What has been read and found in the turn of an axis. */
@@ -52,7 +53,7 @@ struct passo_trackers {
 	bool busy;
 	bool writes_enable, writes_setting; /* bus write strobes, one clock late */
 	uint8_t written;                    /* address within the channel */
-	bool hold;                          /* in the previous clock */
+	bool hold, path_runs;               /* in the previous clock */
 	struct passo_tracker_turn now;
 };
 

@@ -592,7 +592,8 @@ void passo_trackers_restart(struct passo_trackers *trackers, const struct passo_
 /* The unit that serves all axes. */
 void passo_tracker_clock(struct passo_channel *channel, const struct passo_bus *bus, bool selected,
     const struct passo_tracker_wires *wires);
-/* Whether the line that runs moves an axis. */
+/* Whether the trackers know whether the path runs; whether the line that runs moves an axis. */
+bool passo_trackers_settled(const struct passo_channel *channel);
 bool passo_trackers_path_moves(const struct passo_channel *channel, unsigned axis);
 /* The step of an axis and its direction, of path and tracker; and a clock of all trackers. */
 struct passo_tracker_join_result passo_trackers_join(const struct passo_channel *channel, unsigned axis);

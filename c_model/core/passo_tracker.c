@@ -249,7 +249,7 @@ static bool axis_rests(const struct passo_tracker_axis *axis, const struct passo
 {
 	const bool there = axis->position == (uint64_t)axis->target << 32;
 
-	return axis->velocity == 0u && !axis->step_made && !axis->moves && join->owed == 0
+	return axis->velocity == 0u && !axis->step_made && !axis->moves && join->owed == 0 && !join->ready
 	    && axis->target == axis->host.target[join->went_down ? 1 : 0] && axis->speed == axis->host.speed
 	    && axis->acceleration == axis->host.acceleration && axis->at_target == there
 	    && (there || !axis->enabled) && axis->shown == (uint32_t)(axis->position >> 32);
@@ -262,7 +262,8 @@ bool passo_trackers_quiet(const struct passo_channel *channel, const struct pass
 
 	if (!trackers->present)
 		return true;
-	if (trackers->clears != 0u || trackers->busy || trackers->writes_enable || trackers->writes_setting)
+	if (!passo_trackers_settled(channel) || trackers->clears != 0u || trackers->busy
+	    || trackers->writes_enable || trackers->writes_setting)
 		return false;
 	passo_admission_wires(&channel->admission, inputs->bus, inputs->tables_wanted, &wires);
 	if (trackers->hold != (wires.hold || passo_inputs_requests(channel, inputs).wait))

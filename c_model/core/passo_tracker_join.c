@@ -15,8 +15,7 @@ struct passo_tracker_join_result passo_tracker_join_wires(
 {
 	const int size = size_of(join);
 	const bool against = size != 0 && (join->owed < 0) != wires->path_down;
-	const bool joins = size != 0 && !wires->path_step && (!wires->waits || size == OWED_MAX)
-	                && (!against || !wires->path_moves || size >= 2);
+	const bool joins = join->ready && !wires->path_step;
 	const bool goes = wires->path_step && !against;
 	const bool turned = joins ? against
 	                  : goes  ? false
@@ -31,12 +30,17 @@ struct passo_tracker_join_result passo_tracker_join_wires(
 void passo_tracker_join_clock(struct passo_tracker_join *join, const struct passo_tracker_join_wires *wires)
 {
 	const struct passo_tracker_join_result result = passo_tracker_join_wires(join, wires);
+	const int size = size_of(join);
+	const bool against = size != 0 && (join->owed < 0) != wires->path_down;
+	const bool may_join = (!wires->waits && !wires->path_step) || size == OWED_MAX;
 	int owed = join->owed;
 
 	if (result.joins || result.cancels)
 		owed += owed < 0 ? 1 : -1;
 	if (wires->made)
 		owed += wires->made_down ? -1 : 1;
+	join->ready = size != 0 && may_join && (!against || !wires->path_moves || size >= 2) && !result.joins
+	           && !result.cancels && !wires->made && !wires->halt;
 	join->turned = result.direction != wires->path_down;
 	if (wires->path_moves)
 		join->went_down = wires->path_down;

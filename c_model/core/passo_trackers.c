@@ -3,13 +3,24 @@
  */
 #include "passo_model.h"
 
-bool passo_trackers_path_moves(const struct passo_channel *channel, unsigned axis)
+/* The profile runs, and the rate is not 0. */
+static bool path_runs(const struct passo_channel *channel)
 {
 	const enum passo_state state = channel->motion.state;
 	const bool moving =
 	    state == PASSO_STATE_RUN || state == PASSO_STATE_SETTLE || state == PASSO_STATE_DRAIN;
 
-	return moving && channel->timescale.rate != 0u && ((uint32_t)channel->line.moves >> axis & 1u) != 0u;
+	return moving && channel->timescale.rate != 0u;
+}
+
+bool passo_trackers_settled(const struct passo_channel *channel)
+{
+	return channel->trackers.path_runs == path_runs(channel);
+}
+
+bool passo_trackers_path_moves(const struct passo_channel *channel, unsigned axis)
+{
+	return channel->trackers.path_runs && ((uint32_t)channel->line.moves >> axis & 1u) != 0u;
 }
 
 static struct passo_tracker_join_wires join_wires(const struct passo_channel *channel, unsigned axis)
@@ -62,4 +73,5 @@ void passo_trackers_clock(
 	for (unsigned i = 0; i < channel->axes; i++)
 		trackers->join[i] = joins[i];
 	trackers->busy = busy;
+	trackers->path_runs = path_runs(channel);
 }
