@@ -115,7 +115,6 @@ module passo_tracker #(
   reg  [4:0] result;
   reg        writes;
   reg        subtracts;
-  reg        borrows;  // carry into the lowest word
   reg        is_zero;  // write 0
   reg        is_over;  // the second number has no words left, or does not count
 
@@ -125,7 +124,6 @@ module passo_tracker #(
     result    = {SCRATCH[4:2], word};
     writes    = 1'b1;
     subtracts = ~negative;
-    borrows   = ~negative;
     is_zero   = 1'b0;
     is_over   = 1'b0;
     case (slot[4:2])
@@ -136,7 +134,6 @@ module passo_tracker #(
         result    = clears_position ? {TARGET[4:1], word[0]} : {SPARE[4:1], word[0]};
         writes    = ~upper;
         subtracts = 1'b1;
-        borrows   = 1'b1;
       end
       3'd1: begin
         first     = {TARGET[4:2], word};
@@ -158,7 +155,6 @@ module passo_tracker #(
         writes    = upper;
         is_over   = keeps;
         subtracts = ~(speeds | keeps);
-        borrows   = ~(speeds | keeps);
         is_zero   = cleared;
       end
       3'd6: begin
@@ -167,7 +163,6 @@ module passo_tracker #(
         result    = {STOPPING[4:2], word};
         is_over   = upper | keeps;
         subtracts = ~(speeds | keeps);
-        borrows   = ~(speeds | keeps);
         is_zero   = cleared;
       end
       default: begin
@@ -176,17 +171,13 @@ module passo_tracker #(
         result    = {POSITION[4:2], word};
         is_over   = upper | lands;
         subtracts = negative & ~lands;
-        borrows   = negative & ~lands;
         is_zero   = cleared_position;
       end
     endcase
     // two words of the target are 0
     if (is_zero) first = {TARGET[4:1], word[0]};
     if (is_zero || is_over) second = {TARGET[4:1], word[0]};
-    if (is_zero) begin
-      subtracts = 1'b0;
-      borrows   = 1'b0;
-    end
+    if (is_zero) subtracts = 1'b0;
   end
 
   // ---- settings of the host: target up, target down, speed, acceleration, upper halves at odd places ----
@@ -201,7 +192,6 @@ module passo_tracker #(
   wire [ 4:0] setting = slot[4] ? {slot[2] ? SPEED[4:1] : ACCELERATION[4:1], ~word[0]} : {TARGET[4:2], 1'b1, ~word[0]};
   wire [15:0] setting_word;
   reg copies_q;
-  reg spoils;
 
   // ---- memory ----
   wire [15:0] first_word;
@@ -209,7 +199,7 @@ module passo_tracker #(
   reg  [ 7:0] result_q;
   reg         writes_q;
   reg         subtracts_q;
-  reg         borrows_q;
+  reg         borrows_q;  // carry into the lowest word
   reg         begins_q;  // lowest word
   reg         carry;
   wire [15:0] term = second_word ^ {16{subtracts_q}};
@@ -274,12 +264,11 @@ module passo_tracker #(
     word_q       <= word;
     result_q     <= {axis_padded, copies ? setting : result};
     copies_q     <= copies;
-    writes_q     <= copies ? ~(word[0] ? spoils : writes_upper) : writes;
+    writes_q     <= copies ? ~(word[0] ? writes_lower : writes_upper) : writes;
     subtracts_q  <= subtracts;
-    borrows_q    <= borrows;
+    borrows_q    <= slot[4:2] == 3'd1 ? ~negative : subtracts;
     begins_q     <= word == 2'd0 || ((slot[4:2] == 3'd0 || slot[4:2] == 3'd5) && word == 2'd2);
     carry        <= sum[16];
-    spoils       <= writes_upper;
     writes_lower <= writes_upper & ~rst;
     writes_upper <= bus_write & (in_targets | in_axis) & ~rst;
     if (bus_write)
@@ -407,11 +396,9 @@ module passo_tracker #(
     end
   end
 
-  /* verilator lint_off UNUSEDSIGNAL */
   wire [7:0] enabled_padded = {{(8 - AXES) {1'b0}}, enabled};
   wire [7:0] moves_padded = {{(8 - AXES) {1'b0}}, moves};
   wire [7:0] at_target_padded = {{(8 - AXES) {1'b0}}, at_target};
-  /* verilator lint_on UNUSEDSIGNAL */
 
   assign read_data = (read_state ? {8'd0, at_target_padded, moves_padded, enabled_padded} : 32'd0) | position;
 

@@ -36,19 +36,6 @@ MOVES = (
 )
 
 
-@pytest.fixture(scope="module")
-def page(tmp_path_factory: pytest.TempPathFactory) -> str:
-    """The address of the page."""
-    return build(tmp_path_factory.mktemp("web")).as_uri()
-
-
-@pytest.fixture(scope="module")
-def kept(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
-    """A browser for all tests."""
-    with Browser(tmp_path_factory.mktemp("browser")) as browser:
-        yield browser
-
-
 @pytest.fixture
 def browser(kept: Browser, page: str) -> Browser:
     """The page, as it opens."""

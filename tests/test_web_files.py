@@ -17,7 +17,7 @@ from passo.failure import BadInputError
 from passo.machine_file import MachineFile, read_machine
 from passo.part import Played, core_of, play_part, read_part
 from passo.toolchain import paths
-from passo.web import EXAMPLE, build
+from passo.web import EXAMPLE
 
 from benchmarks.rigid_tapping import AXIS
 from tests.helpers.browser import Browser
@@ -30,24 +30,11 @@ PYODIDE = pytest.mark.skipif(
 PATIENCE = 300  # seconds
 
 
-@pytest.fixture(scope="module")
-def page(tmp_path_factory: pytest.TempPathFactory) -> str:
-    """The address of the page."""
-    return build(tmp_path_factory.mktemp("web")).as_uri()
-
-
 @pytest.fixture(scope="module", params=[Browser, Firefox])
 def either(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
     """A browser for all tests that both pass."""
     with request.param(tmp_path_factory.mktemp("either")) as made:
         yield made
-
-
-@pytest.fixture(scope="module")
-def kept(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
-    """A browser for all tests."""
-    with Browser(tmp_path_factory.mktemp("browser")) as browser:
-        yield browser
 
 
 @pytest.fixture

@@ -156,12 +156,9 @@ void passo_core_take_pins(const struct passo_core *core, unsigned channel, const
 
 bool passo_core_any_moving(const struct passo_core *core)
 {
-	for (unsigned i = 0; i < core->parameters.channels; i++) {
-		const enum passo_state state = core->channel[i].motion.state;
-		if (state == PASSO_STATE_RUN || state == PASSO_STATE_SETTLE || state == PASSO_STATE_DRAIN
-		    || core->channel[i].trackers.busy)
+	for (unsigned i = 0; i < core->parameters.channels; i++)
+		if (passo_motion_moves(&core->channel[i].motion) || core->channel[i].trackers.busy)
 			return true;
-	}
 	return false;
 }
 

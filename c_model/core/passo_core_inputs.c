@@ -31,9 +31,7 @@ struct passo_requests passo_inputs_requests(
 	const struct passo_trigger *trigger = &unit->trigger;
 	const struct passo_machine_unit *machine = inputs->machine;
 	const enum passo_trigger_action action = (enum passo_trigger_action)trigger->action;
-	const enum passo_state state = channel->motion.state;
-	const bool moving = state == PASSO_STATE_RUN || state == PASSO_STATE_SETTLE
-	                 || state == PASSO_STATE_DRAIN || channel->trackers.busy;
+	const bool moving = passo_motion_moves(&channel->motion) || channel->trackers.busy;
 	const bool all_off = machine->watchdog_disable || (machine->estop_seen & 2u) != 0u;
 	const bool hard = trigger->latch && action == PASSO_TRIGGER_ACTION_HARD_STOP;
 	const bool soft = trigger->latch && action == PASSO_TRIGGER_ACTION_SOFT_STOP;

@@ -9,8 +9,6 @@
 
 #include "passo_command.h"
 
-#define PASSO_TRACKER_TURN 32u /* clocks */
-
 /* What the host has written, and what the unit takes of it once a turn. */
 struct passo_tracker_settings {
 	uint32_t target[2];           /* up, down: signed steps */
@@ -68,7 +66,8 @@ struct passo_tracker_join_wires {
 };
 
 struct passo_tracker_join_result {
-	bool step_request, direction, cancels, joins;
+	bool step_request, direction;
+	bool against, joins; /* what is owed goes against the path; a step of it is made */
 };
 
 struct passo_tracker_join_result passo_tracker_join_wires(

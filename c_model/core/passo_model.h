@@ -296,6 +296,13 @@ struct passo_motion {
 	bool running;
 };
 
+/* The profile runs, settles, or missing substeps are drained. */
+static inline bool passo_motion_moves(const struct passo_motion *motion)
+{
+	return motion->state == PASSO_STATE_RUN || motion->state == PASSO_STATE_SETTLE
+	    || motion->state == PASSO_STATE_DRAIN;
+}
+
 struct passo_channel_registers {
 	uint32_t rate_target, rate_slew, stop_slew; /* UQ1.16 */
 	uint32_t drain_velocity;                    /* UQ0.32 */

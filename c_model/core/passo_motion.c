@@ -47,7 +47,7 @@ void passo_motion_wires(const struct passo_channel *channel, const struct passo_
 
 	wires->stopped = state == PASSO_STATE_STOPPED;
 	wires->occupied = state != PASSO_STATE_IDLE && !wires->stopped;
-	wires->moving = state == PASSO_STATE_RUN || state == PASSO_STATE_SETTLE || state == PASSO_STATE_DRAIN;
+	wires->moving = passo_motion_moves(motion);
 	wires->counting = state == PASSO_STATE_RUN || state == PASSO_STATE_DRAIN;
 	wires->drain = state == PASSO_STATE_DRAIN;
 	wires->tracking = channel->trackers.busy;

@@ -25,7 +25,7 @@ static bool sign_of(uint64_t value)
 
 static unsigned turns_of(const struct passo_channel *channel)
 {
-	return channel->axes > 4u ? 8u : 4u;
+	return PASSO_TRACKER_TICK(channel->axes) / PASSO_TRACKER_TURN;
 }
 
 void passo_trackers_reset(struct passo_trackers *trackers, bool present)
@@ -283,7 +283,7 @@ bool passo_trackers_quiet(const struct passo_channel *channel, const struct pass
 void passo_trackers_skip(struct passo_channel *channel, uint64_t clocks)
 {
 	struct passo_trackers *trackers = &channel->trackers;
-	const uint64_t tick = (uint64_t)turns_of(channel) * PASSO_TRACKER_TURN;
+	const uint64_t tick = PASSO_TRACKER_TICK(channel->axes);
 	const uint64_t now = trackers->turn * PASSO_TRACKER_TURN + trackers->slot;
 
 	trackers->slot = (uint8_t)((now + clocks) % PASSO_TRACKER_TURN);

@@ -23,7 +23,7 @@ struct passo_tracker_join_result passo_tracker_join_wires(
 
 	return (struct passo_tracker_join_result){.step_request = goes || joins,
 	    .direction = wires->path_down != turned,
-	    .cancels = wires->path_step && against,
+	    .against = against,
 	    .joins = joins};
 }
 
@@ -31,16 +31,16 @@ void passo_tracker_join_clock(struct passo_tracker_join *join, const struct pass
 {
 	const struct passo_tracker_join_result result = passo_tracker_join_wires(join, wires);
 	const int size = size_of(join);
-	const bool against = size != 0 && (join->owed < 0) != wires->path_down;
+	const bool cancels = wires->path_step && result.against;
 	const bool may_join = (!wires->waits && !wires->path_step) || size == OWED_MAX;
 	int owed = join->owed;
 
-	if (result.joins || result.cancels)
+	if (result.joins || cancels)
 		owed += owed < 0 ? 1 : -1;
 	if (wires->made)
 		owed += wires->made_down ? -1 : 1;
-	join->ready = size != 0 && may_join && (!against || !wires->path_moves || size >= 2) && !result.joins
-	           && !result.cancels && !wires->made && !wires->halt;
+	join->ready = size != 0 && may_join && (!result.against || !wires->path_moves || size >= 2)
+	           && !result.joins && !cancels && !wires->made && !wires->halt;
 	join->turned = result.direction != wires->path_down;
 	if (wires->path_moves)
 		join->went_down = wires->path_down;

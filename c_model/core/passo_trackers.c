@@ -6,11 +6,7 @@
 /* The profile runs, and the rate is not 0. */
 static bool path_runs(const struct passo_channel *channel)
 {
-	const enum passo_state state = channel->motion.state;
-	const bool moving =
-	    state == PASSO_STATE_RUN || state == PASSO_STATE_SETTLE || state == PASSO_STATE_DRAIN;
-
-	return moving && channel->timescale.rate != 0u;
+	return passo_motion_moves(&channel->motion) && channel->timescale.rate != 0u;
 }
 
 bool passo_trackers_settled(const struct passo_channel *channel)

@@ -16,6 +16,10 @@
 #define PASSO_CHANNELS_MAX PASSO_ADDRESS_CHANNEL_COUNT
 #define PASSO_AXES_MAX PASSO_CHANNEL_AXIS_COUNT
 
+/* Of the trackers of a core: a turn of an axis, and a tick, in which it has one; clocks. */
+#define PASSO_TRACKER_TURN 32u
+#define PASSO_TRACKER_TICK(axes) (PASSO_TRACKER_TURN * ((axes) > 4u ? 8u : 4u))
+
 /* Velocities and progress are UQ0.48: an integer v stands for v / 2^48. */
 #define PASSO_ONE_Q48 (UINT64_C(1) << 48)
 /* Highest velocity: half a substep per clock, because the DDA takes two clocks per substep. */

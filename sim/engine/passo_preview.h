@@ -36,6 +36,7 @@ struct passo_preview_refusal {
 /* What a check has found. */
 struct passo_preview_check {
 	uint32_t lines;  /* up to the end of the program */
+	size_t bytes;    /* of these lines */
 	uint32_t unread; /* lines with words behind it */
 	uint32_t chords; /* with those of the arcs */
 	uint32_t refused;

@@ -55,6 +55,7 @@ struct passo_preview_check passo_preview_check(struct passo_gcode *gcode, const 
 			made.refused++;
 		}
 		made.lines++;
+		made.bytes = at + count;
 	}
 	return made;
 }

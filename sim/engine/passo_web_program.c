@@ -290,9 +290,7 @@ EXPORT("add") bool web_add(void)
 		refuse(&refusals[i]);
 	web.refused += made.refused;
 	web.unread += made.unread;
-	for (uint32_t line = 0; line < made.lines; line++)
-		web.length += passo_gcode_line_count(
-		    web.text + web.length, (size_t)(text + web.room - (web.text + web.length)));
+	web.length += made.bytes;
 	web.kept[web.files++] = made.lines;
 	return true;
 }

@@ -18,18 +18,27 @@ static enum passo_error check(const struct passo *passo, const struct passo_trac
 	return track ? check_axis(passo, track->axis) : PASSO_ERROR_ARGUMENT_POINTER;
 }
 
+static enum passo_error read_state(struct passo *passo, struct passo_channel_tracker_state *state)
+{
+	uint32_t word;
+	const enum passo_error error =
+	    passo_host_read(passo->host, (uint16_t)(passo->base + PASSO_CHANNEL_TRACKER_STATE), &word, 1);
+
+	if (error == PASSO_OK)
+		*state = passo_unpack_channel_tracker_state(word);
+	return error;
+}
+
 /* Enables the tracker of an axis, or not; leaves the others. */
 static enum passo_error enable(struct passo *passo, uint8_t axis, bool on)
 {
 	const uint32_t bit = 1u << axis;
-	uint32_t word;
-	enum passo_error error =
-	    passo_host_read(passo->host, (uint16_t)(passo->base + PASSO_CHANNEL_TRACKER_STATE), &word, 1);
+	struct passo_channel_tracker_state state;
+	const enum passo_error error = read_state(passo, &state);
 
 	if (error != PASSO_OK)
 		return error;
-	word = passo_unpack_channel_tracker_state(word).enabled;
-	word = on ? word | bit : word & ~bit;
+	const uint32_t word = on ? state.enabled | bit : state.enabled & ~bit;
 	return passo_driver_write(passo, PASSO_CHANNEL_TRACKER_ENABLE, &word, 1);
 }
 
@@ -77,7 +86,8 @@ enum passo_error passo_untrack(struct passo *passo, uint8_t axis)
 enum passo_error passo_read_tracker(struct passo *passo, uint8_t axis, struct passo_track_reading *reading)
 {
 	enum passo_error error = check_axis(passo, axis);
-	uint32_t position, word;
+	struct passo_channel_tracker_state state;
+	uint32_t position;
 
 	if (error == PASSO_OK && !reading)
 		error = PASSO_ERROR_ARGUMENT_POINTER;
@@ -85,15 +95,13 @@ enum passo_error passo_read_tracker(struct passo *passo, uint8_t axis, struct pa
 		error = passo_host_read(passo->host,
 		    (uint16_t)(passo->base + PASSO_CHANNEL_TRACKER_POSITION_BASE + axis), &position, 1);
 	if (error == PASSO_OK)
-		error = passo_host_read(
-		    passo->host, (uint16_t)(passo->base + PASSO_CHANNEL_TRACKER_STATE), &word, 1);
+		error = read_state(passo, &state);
 	if (error != PASSO_OK)
 		return error;
-	const struct passo_channel_tracker_state state = passo_unpack_channel_tracker_state(word);
 	*reading = (struct passo_track_reading){.position = (int32_t)position,
-	    .enabled = (state.enabled >> axis & 1u) != 0u,
-	    .moves = (state.moves >> axis & 1u) != 0u,
-	    .at_target = (state.at_target >> axis & 1u) != 0u};
+	    .enabled = ((uint32_t)state.enabled >> axis & 1u) != 0u,
+	    .moves = ((uint32_t)state.moves >> axis & 1u) != 0u,
+	    .at_target = ((uint32_t)state.at_target >> axis & 1u) != 0u};
 	return PASSO_OK;
 }
 

@@ -15,13 +15,10 @@
 extern "C" {
 #endif
 
-/* The clocks of a tick of the trackers: they make at most one step in it. */
-#define PASSO_TRACKER_TICK(axes) ((axes) > 4u ? 256u : 128u)
-
 struct passo_track {
 	uint8_t axis;
 	uint16_t backlash;     /* steps that the axis goes back further where its path turns down; else 0 */
-	uint64_t top_speed;    /* UQ32.32 steps/s, below a step per tick */
+	uint64_t top_speed;    /* UQ32.32 steps/s, below a step per PASSO_TRACKER_TICK(axes) clocks */
 	uint64_t acceleration; /* UQ32.32 steps/s^2, at most top_speed in a tick */
 };
 
