@@ -309,6 +309,37 @@ def test_a_thread_that_cannot_be(browser: Browser, tmp_path: Path, text: str, li
     assert verdict_of(browser, text) == f"error: line {line}: {reason}"
 
 
+WAITS = "clock_hz = 4_000_000\nspindle_maximum = 1000\nspindle_wait = "
+STARTS = "G1 X1 F600\nM3 S1000\nX2\nX3 M4\nX4\nM5\nX5\n"
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        "0.2\n",
+        "1\nspindle_at_speed = 3\n",
+        HEAD[HEAD.index("[spindle]") :].replace("[", "1\nspindle_at_speed = 2\n[", 1),
+    ],
+)
+def test_motions_wait_for_the_spindle(browser: Browser, tmp_path: Path, head: str) -> None:
+    path = tmp_path / "mill.toml"
+    path.write_text(WAITS + head + "".join(AXIS.format(letter, 80) for letter in "XYZ"))
+    played = of_the_command(tmp_path, read_machine(path), STARTS)
+    assert len(played.motions) == 3
+    browser.value(f"(web.putMachine({json.dumps(path.read_text())}), 1)")
+    is_played(browser, played, STARTS)
+
+
+def test_a_spindle_that_is_too_slow(browser: Browser, tmp_path: Path) -> None:
+    path = tmp_path / "mill.toml"
+    path.write_text(f"{WAITS}0.25\nspindle_at_speed = 1\n" + AXIS.format("X", 80))
+    with pytest.raises(BadInputError) as error:
+        of_the_command(tmp_path, read_machine(path), STARTS)
+    browser.value(f"(web.putMachine({json.dumps(path.read_text())}), 1)")
+    reason = str(error.value).split("thread.ngc:2: ")[1]
+    assert verdict_of(browser, STARTS) == f"error: line 2: {reason}"
+
+
 def test_the_spindle_of_the_page_can_be_wrong(browser: Browser, tmp_path: Path) -> None:
     """A spindle that wanders otherwise makes other steps: the comparison above sees it."""
     path = mill(tmp_path)

@@ -110,6 +110,23 @@ speed = 50
 acceleration = 500
 """,
 }
+KINDS["a spindle that is waited for"] = """
+board = "icebreaker"
+spindle_maximum = 3000
+spindle_wait = 2.5
+spindle_at_speed = 2
+[[axis]]
+name = "X"
+steps_per_mm = 200
+speed = 50
+acceleration = 500
+switches = ["home"]
+[[axis]]
+name = "Y"
+steps_per_mm = 400
+speed = 50
+acceleration = 500
+"""
 KINDS["spindle on a board"] = KINDS["spindle"].replace("clock_hz = 64_000_000", 'board = "hx8k"')
 # What is put in place of a value, and lines that are put between others; "⏎" is the end of a line.
 VALUES = r"""
@@ -134,6 +151,8 @@ pins.step_low = 1 | "quoted key" = 1 | key = 1 2
 motors = 3 | encoders = [1]⏎following = 1 | jerk = 100
 home = "low" | laser = 1 | probe = true | [switches]⏎stop = 0
 board = "ulx3s" | board = "tangnano9k" | drive = "TB6600"
+spindle_wait = 1 | spindle_wait = 61 | spindle_at_speed = 1 | spindle_at_speed = 9
+spindle_wait = 1⏎spindle_at_speed = 1 | spindle_wait = 1⏎spindle_at_speed = 2⏎spindle_maximum = 9
 [home]⏎racking = 5 | [home]⏎seek = 0 | travel = 0
 [[x]]⏎y = 1⏎[x] | x.y = 1⏎[x] | x = [1]⏎[[x]] | x = {}⏎x.y = 1
 [x.y]⏎[x]⏎[x] | switches = [] | 😀 = 1 | x = "😀" 1

@@ -102,6 +102,13 @@ void passo_gcode_load(struct passo_gcode *gcode, uint8_t tool)
 	gcode->loaded = tool;
 }
 
+#ifndef PASSO_PLAIN_GCODE
+void passo_gcode_stop_spindle(struct passo_gcode *gcode)
+{
+	gcode->mode[PASSO_GCODE_SPINDLE] = PASSO_GCODE_M(5);
+}
+#endif
+
 void passo_gcode_set_length(struct passo_gcode *gcode, int64_t length)
 {
 	gcode->tool_length = length;

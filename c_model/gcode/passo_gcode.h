@@ -196,6 +196,9 @@ bool passo_gcode_is_busy(const struct passo_gcode *gcode);
 /* A measured length in force, as by G43.1, nm. */
 void passo_gcode_set_length(struct passo_gcode *gcode, int64_t length);
 
+/* As by M5, for the following lines. */
+void passo_gcode_stop_spindle(struct passo_gcode *gcode);
+
 /* The tool is in the spindle. */
 void passo_gcode_load(struct passo_gcode *gcode, uint8_t tool);
 

@@ -217,6 +217,11 @@ void passo_rig_drive(struct passo_rig *rig, uint32_t wheel, uint32_t speed)
 	rig->wheel[wheel].wanted = speed;
 }
 
+bool passo_rig_at_speed(const struct passo_rig *rig, uint32_t wheel)
+{
+	return rig->wheel[wheel].there;
+}
+
 const struct passo_rig_moment *passo_rig_moment(const struct passo_rig *rig, uint32_t event)
 {
 	return &rig->moment[event];

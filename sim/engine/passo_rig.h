@@ -49,6 +49,10 @@ struct passo_rig_wheel {
 	uint32_t per_turn; /* counts from index to index; of other encoders 0: without an index */
 	uint64_t
 	    start_up; /* clocks from rest to that speed; not 0: output 0 turns it on, output 1 reverses it */
+	/* The same, 1 and up: the motor whose home input says that the spindle is at its speed; 0: none. Without
+	 * `per_turn` it has no encoder. */
+	uint8_t ready;
+	bool inverted; /* that input is active low */
 };
 
 enum passo_rig_when { PASSO_RIG_TIME, PASSO_RIG_POSITION, PASSO_RIG_RISING, PASSO_RIG_FALLING };
@@ -105,6 +109,8 @@ bool passo_rig_calls(struct passo_rig *rig);
 void passo_rig_slip(struct passo_rig *rig, uint32_t wheel, int64_t counts);
 /* Mean speed that a spindle with `start_up` is to have when it is on: 2^16 of that of its interval. */
 void passo_rig_drive(struct passo_rig *rig, uint32_t wheel, uint32_t speed);
+/* Whether it has that speed, and is on. */
+bool passo_rig_at_speed(const struct passo_rig *rig, uint32_t wheel);
 const struct passo_rig_moment *passo_rig_moment(const struct passo_rig *rig, uint32_t event);
 int64_t passo_rig_position(const struct passo_rig *rig, uint32_t axis);
 /* Moves up to `capacity` of the oldest changes of inputs to `changes`, of encoders only those of spindles;

@@ -120,15 +120,15 @@ void web_write(void *context, const char *text)
 	web.length += length;
 }
 
-bool web_start(uint32_t axes, uint32_t clock_hz, bool turns)
+bool web_start(uint32_t axes, uint32_t clock_hz, bool encoders, bool outputs)
 {
 	const struct passo_engine_config config = {.core = {.channels = 1,
 						       .axes = (uint8_t)axes,
 						       .tick_log2 = 7,
 						       .line_queue_log2 = 8,
 						       .ramp_queue_log2 = 4,
-						       .encoders = turns,
-						       .outputs = turns},
+						       .encoders = encoders,
+						       .outputs = outputs},
 	    .clock_hz = clock_hz,
 	    .spi_half_period = 2};
 

@@ -15,7 +15,7 @@
 
 /* A core after reset, with no events and no text; false if memory is short. `turns`: it has encoders and
  * outputs, for a spindle. */
-bool web_start(uint32_t axes, uint32_t clock_hz, bool turns);
+bool web_start(uint32_t axes, uint32_t clock_hz, bool encoders, bool outputs);
 
 struct passo_engine *web_engine(void);
 

@@ -25,7 +25,7 @@ EXPORT("open") int web_open(uint32_t axes, uint32_t clock_hz)
 	if (terminal)
 		passo_terminal_destroy(terminal);
 	terminal = NULL;
-	if (web_start(axes, clock_hz, false))
+	if (web_start(axes, clock_hz, false, false))
 		terminal = passo_terminal_create(&caller, clock_hz);
 	return terminal != NULL;
 }

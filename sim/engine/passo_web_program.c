@@ -24,7 +24,7 @@ enum {
 	REST = 8,       /* pulses that time passes for after the end */
 };
 
-enum progress { DONE, GOES_ON, FAILED = -1 };
+enum progress { DONE, GOES_ON, FAILED = -1, SLOW = -2 };
 
 struct limits {
 	double steps_per_mm, speed, acceleration, jump, jerk;
@@ -37,7 +37,8 @@ struct web_machine {
 	double step_high, step_low, dir_setup, dir_hold; /* clocks */
 	double spindle_maximum, left_out, inputs, power;
 	double turn_counts, interval, wander,
-	    start_up;  /* of a spindle with an encoder, as of its rig; or 0 */
+	    start_up; /* of a spindle that is simulated, as of its rig; without an encoder it has no counts; or 0 */
+	double spin_up, at_speed; /* us that motions wait for it; the input of M66 that it says so by, or 0 */
 	double motors; /* 0: one for each axis, and no map */
 	double plus[PASSO_AXES_MAX], minus[PASSO_AXES_MAX];
 	struct limits mixed, axis[AXES];
@@ -95,7 +96,10 @@ static void read_settings(void)
 		.inputs = (uint8_t)machine->inputs,
 		.power = machine->power != 0.0,
 		.turn_counts = (uint16_t)machine->turn_counts},
-	    .inputs = &web.inputs};
+	    .inputs = &web.inputs,
+	    .spin_up = (uint32_t)machine->spin_up,
+	    .at_speed = (uint8_t)machine->at_speed};
+	web.inputs = 0;
 	for (unsigned motor = 0; motor < PASSO_AXES_MAX; motor++) {
 		path->motors.plus[motor] = (uint8_t)machine->plus[motor];
 		path->motors.minus[motor] = (uint8_t)machine->minus[motor];
@@ -171,12 +175,14 @@ static bool attach_spindle(void)
 	    .wander = (uint32_t)machine->wander,
 	    .per_turn = (uint32_t)machine->turn_counts,
 	    .start_up = (uint64_t)machine->start_up};
+	config.wheel[0].ready = (uint8_t)machine->at_speed;
 	web.program.machine.spindle = motors;
 	web.rig = passo_engine_attach(web_engine(), &config);
 	return web.rig != NULL;
 }
 
-/* The spindle has the speed of the program; lines behind a thread do not change it. */
+/* The spindle has the speed of the program; lines behind a thread do not change it. Its input is the only one
+ * that is not low. */
 static void drive_spindle(void)
 {
 	static struct passo_rig_change changes[CHANGES];
@@ -188,6 +194,8 @@ static void drive_spindle(void)
 	passo_rig_drive(web.rig, 0, power + (power > 0u));
 	while (passo_rig_drain(web.rig, changes, CHANGES) == CHANGES)
 		continue;
+	if (web.settings.at_speed > 0u)
+		web.inputs = (uint16_t)(passo_rig_at_speed(web.rig, 0) << web.settings.at_speed);
 }
 
 /* One turn of the main loop, as in sim/passo/host_loop.py. */
@@ -311,10 +319,11 @@ EXPORT("unread") uint32_t web_unread(void)
 EXPORT("begin") int32_t web_begin(void)
 {
 	const struct web_machine *machine = &web.machine;
-	const bool turns = machine->turn_counts != 0.0;
+	const bool counted = machine->turn_counts != 0.0, turns = machine->start_up != 0.0;
+	const bool outputs = turns || machine->spin_up != 0.0;
 
 	web.rig = NULL;
-	if (!web_start((uint32_t)machine->core_axes, (uint32_t)machine->clock_hz, turns)) {
+	if (!web_start((uint32_t)machine->core_axes, (uint32_t)machine->clock_hz, counted, outputs)) {
 		web_write(NULL, "out of memory");
 		return FAILED;
 	}
@@ -328,7 +337,8 @@ EXPORT("begin") int32_t web_begin(void)
 	return FAILED;
 }
 
-/* Plays a number of turns of the main loop. */
+/* Plays a number of turns of the main loop. SLOW: the spindle was not at its speed in time; other failures are
+ * written. */
 EXPORT("go") int32_t web_go(uint32_t turns)
 {
 	const struct web_machine *machine = &web.machine;
@@ -347,6 +357,8 @@ EXPORT("go") int32_t web_go(uint32_t turns)
 			web_write(NULL, passo_error_text(error));
 			return FAILED;
 		}
+		if (web.program.slow)
+			return SLOW;
 		if (passo_program_is_done(&web.program)) {
 			web_run((uint64_t)(REST
 			                   * (machine->step_high + machine->step_low + machine->dir_setup

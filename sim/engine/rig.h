@@ -26,6 +26,7 @@ struct wheel {
 	/* of a spindle with `start_up`; 2^32 counts, per tick where they are speeds */
 	int64_t angle, speed;
 	uint32_t wanted; /* 2^16 of its greatest speed */
+	bool there;      /* it has that, and is on */
 };
 
 struct passo_rig {

@@ -45,6 +45,11 @@ bool rig_drive(
 		wheel->speed = wanted - wheel->speed > change ? wheel->speed + change : wanted;
 	else
 		wheel->speed = wheel->speed - wanted > change ? wheel->speed - change : wanted;
+	wheel->there = wheel->speed == wanted && (outputs & ON) != 0u;
+	if (fitted->ready > 0u)
+		rig_set(inputs, PASSO_INPUT_HOME, fitted->ready - 1u, wheel->there != fitted->inverted);
+	if (fitted->per_turn == 0u)
+		return false;
 	wheel->angle += wheel->speed * wander(rig, number) / ONE;
 	const int64_t count = wheel->angle >> 32;
 	if (count == wheel->count)

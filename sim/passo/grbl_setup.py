@@ -14,7 +14,7 @@ import numpy as np
 from passo.build import Parameters
 from passo.engine import NUMBERS
 from passo.failure import BadInputError
-from passo.machine_file import ENCODER_FILTER, MachineFile, check_pins
+from passo.machine_file import ENCODER_FILTER, MachineFile, Spindle, check_pins
 from passo.moves import PinTiming
 from passo.native import ffi, planner
 from passo.output import write_bytes
@@ -28,6 +28,8 @@ REPORT_ALL = 3  # $10: MPos and Bf
 INFINITE = math.inf
 FILTER_CLOCKS = 65535  # of the filter of the switches, at most
 ALWAYS_ON = 255  # $1
+TICKS_PER_COUNT = 8  # of a simulated spindle (rig_spindle.c)
+SPINDLE_TICKS = 1000  # of one without an encoder, in a second
 PAGE = 2048  # bytes, as of the STM32F103CB
 PAGES = 2
 WORD = 4
@@ -96,6 +98,7 @@ def default_settings(machine: MachineFile) -> Any:
         ("DEBOUNCE", "switches: debounce", switches.debounce, 1000, filter_most),
         ("PULL_OFF", "home: pull_off", switches.pull_off, 1, INFINITE),
         ("SPINDLE", "spindle_maximum", machine.gcode.spindle_maximum, 1, INFINITE),
+        ("SPIN_UP", "spindle_wait", machine.spindle_wait, 1, INFINITE),
     ):
         index = getattr(c, f"PASSO_GRBL_{name}")
         made.value[index] = _millionths(machine, key, index, given, factor, most)
@@ -147,6 +150,7 @@ def setup_of(machine: MachineFile, parameters: Parameters, defaults: Any, pages:
     if parameters.encoders and parameters.axes > len(machine.motors):
         made.turn_counts = machine.gcode.turn_counts
     made.probe, made.pages = machine.switches.probe, pages
+    made.at_speed = machine.spindle_at_speed
     return made
 
 
@@ -165,7 +169,7 @@ def attach(
 ) -> Any:
     """A simulated machine at the core; returns the rigs, with their libraries.
 
-    `spindle`: its encoder is behind the motors; it turns at full speed while output 0 is on.
+    `spindle`: its encoder, if there is one, is behind the motors; it turns at full speed while output 0 is on.
     """
     config = rig_config(engine, machine, skews, per_turn)
     if not spindle:
@@ -219,9 +223,13 @@ def rig_config(
 
 
 def spindle_wheel(machine: MachineFile) -> dict[str, int]:
-    """The `struct passo_rig_wheel` of its spindle, with its encoder behind the motors."""
-    assert machine.spindle
+    """The `struct passo_rig_wheel` of its spindle, with its encoder, if it has one, behind the motors."""
+    ready = {"ready": machine.spindle_at_speed, "inverted": int(machine.switches.inverted)}
+    if not machine.spindle:
+        interval = TICKS_PER_COUNT * machine.clock_hz * RATIO_ONE // SPINDLE_TICKS
+        return {"interval": interval, "start_up": round(Spindle.start_up * machine.clock_hz), **ready}
     return {
+        **ready,
         "axis": len(machine.motors),
         "interval": interval_of(machine.clock_hz, machine.gcode.spindle_maximum, machine.spindle.counts),
         "wander": round(machine.spindle.wander * RATIO_ONE / 100),
@@ -261,7 +269,7 @@ def served(
         core = replace(core, axes=more.axes, encoders=1, outputs=1)
     with open_engine(name, core, machine.clock_hz) as engine:
         if machine.has_inputs or core.encoders:
-            tell(attach(engine, machine, per_turn=per_turn, spindle=machine.spindle is not None))
+            tell(attach(engine, machine, per_turn=per_turn, spindle=machine.turns))
         yield engine
 
 

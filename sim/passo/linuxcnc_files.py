@@ -115,10 +115,11 @@ def _hal(machine: MachineFile) -> Iterator[str]:
     yield f"loadrt passo device=[PASSO]DEVICE axes=[KINS]JOINTS{given}"
     if has_spindle:
         yield "loadrt scale names=power"
-    if machine.spindle:
+    compares = machine.spindle is not None and not machine.spindle_at_speed
+    if compares:
         yield "loadrt near names=at-speed"
     functions = ["passo.0.read", "motion-command-handler", "motion-controller"]
-    functions += ["power"] * has_spindle + ["at-speed"] * bool(machine.spindle)
+    functions += ["power"] * has_spindle + ["at-speed"] * compares
     yield from ("", *(f"addf {name} servo-thread" for name in (*functions, "passo.0.write")), "")
     for joint in joints:
         yield from _stepgen(machine, joint)
@@ -184,13 +185,20 @@ def _spindle(machine: MachineFile) -> Iterator[str]:
     yield f"setp power.gain {_number(1 / machine.gcode.spindle_maximum)}"
     yield "net spindle-speed spindle.0.speed-out-abs => power.in"
     yield "net spindle-power power.out => passo.0.power"
-    if machine.spindle is None:
+    if machine.spindle_at_speed:
+        number = (machine.spindle_at_speed - 1) * len(INPUTS) + INPUTS.index("home")
+        yield f"net spindle-ready passo.0.gpio.{number:03}.in => spindle.0.at-speed"
+    elif machine.spindle is None:
         yield "setp spindle.0.at-speed 1"
+    if machine.spindle is None:
         return
     encoder = f"passo.0.encoder.{len(machine.motors):02}"
     yield f"setp {encoder}.scale {machine.spindle.counts}"
     yield f"net spindle-revs {encoder}.position => spindle.0.revs"
     yield f"net spindle-index spindle.0.index-enable <=> {encoder}.index-enable"
+    if machine.spindle_at_speed:
+        yield f"net spindle-turns {encoder}.velocity => spindle.0.speed-in"
+        return
     yield f"net spindle-turns {encoder}.velocity => spindle.0.speed-in at-speed.in1"
     yield "net spindle-wanted spindle.0.speed-out-rps => at-speed.in2"
     yield f"setp at-speed.scale {_number(AT_SPEED)}"

@@ -39,7 +39,7 @@ from passo.values import BadValueError, Written, shown
 FILE_KEYS = (
     *("board", "clock_hz", "junction_deviation", "arc_tolerance", "profile", "spindle_maximum", "laser"),
     *("soft_limits", "probe", "drive", "chip", "kinematics", "pins", "switches", "home", "motors", "axis"),
-    *("spindle", "host"),
+    *("spindle", "spindle_wait", "spindle_at_speed", "host"),
 )
 AXIS_KEYS = (
     *("name", "steps_per_mm", "speed", "acceleration", "jerk", "jump", "travel", "home", "switches"),
@@ -63,6 +63,7 @@ RATIO_ONE = 1 << 16  # counts per step
 FOLLOWING_COUNTS = 65535  # of a following error, at most
 COUNT_CLOCKS = ENCODER_FILTER + 2  # from a count of an encoder to the next
 WAITING_STEPS = 2
+SPINDLE_WAIT_MAX = 60  # s
 JUNCTION_DEVIATION, ARC_TOLERANCE = 0.01, 0.002  # mm
 
 
@@ -128,6 +129,8 @@ class MachineFile:
     kinematics: str = "cartesian"
     spindle: Spindle | None = None
     host: str = HOSTS[0]
+    spindle_wait: float = 0  # s that motions wait for the spindle
+    spindle_at_speed: int = 0  # P of M66: the input that ends it, or it is an error; 0: the time alone
 
     @property
     def letters(self) -> str:
@@ -202,9 +205,15 @@ class MachineFile:
         return "inputs" in self.parts
 
     @property
+    def turns(self) -> bool:
+        """Whether its spindle is simulated: something tells how fast that is."""
+        return self.spindle is not None or self.spindle_at_speed > 0
+
+    @property
     def parts(self) -> tuple[str, ...]:
         """The optional parts of the core that it needs."""
-        return _parts(self.ends, self.switches, self.gcode.spindle_maximum, self.spindle is not None)
+        maximum = self.gcode.spindle_maximum
+        return _parts(self.ends, self.switches, maximum, self.spindle is not None, self.spindle_at_speed)
 
     @property
     def core_axes(self) -> int:
@@ -258,9 +267,11 @@ def _machine(path: Path, data: Table) -> MachineFile:
     switches = _switches(data)
     _check_squared(axes, ends, switches)
     spindle = read_positive(data, "spindle_maximum") if "spindle_maximum" in data else 0
+    wait, at_speed = _waits(data, spindle, ends, len(motors.map(len(axes))))
     has_encoder = "spindle" in data
-    parts = _parts(ends, switches, spindle, has_encoder)
-    board, clock_hz = _board(data, wanted_hz, ends, len(motors.map(len(axes))) + has_encoder, parts)
+    parts = _parts(ends, switches, spindle, has_encoder, at_speed)
+    count = len(motors.map(len(axes))) + has_encoder
+    board, clock_hz = _board(data, wanted_hz, ends, count, parts, at_speed)
     timing = within("pins", lambda: read_pins(pins, clock_hz, (ENABLE_INVERTED,)))
     deviation = _number(data, "junction_deviation", JUNCTION_DEVIATION)
     settings = PathSettings(axes, clock_hz, junction_deviation=deviation, profile=profile, motors=motors)
@@ -296,7 +307,26 @@ def _machine(path: Path, data: Table) -> MachineFile:
         kinematics,
         encoder,
         read_word(data, "host", HOSTS) if "host" in data else HOSTS[0],
+        wait,
+        at_speed,
     )
+
+
+def _waits(data: Table, maximum: int, ends: Sequence[AxisEnds], motors: int) -> tuple[float, int]:
+    """Seconds that motions wait for the spindle, and the input that says that it is at its speed."""
+    wait = _number(data, "spindle_wait", 0)
+    if wait and not maximum:
+        raise BadValueError("spindle_wait: it needs spindle_maximum")
+    if wait > SPINDLE_WAIT_MAX:
+        raise BadValueError(f"spindle_wait must be at most {SPINDLE_WAIT_MAX} s")
+    if "spindle_at_speed" not in data:
+        return wait, 0
+    at_speed = read_integer(data, "spindle_at_speed", 1, motors)
+    if not wait:
+        raise BadValueError("spindle_at_speed: it needs spindle_wait, the seconds after which it is an error")
+    if at_speed <= len(ends) and "home" in ends[at_speed - 1].switches:
+        raise BadValueError(f"spindle_at_speed: input P{at_speed} is the home switch of axis {at_speed}")
+    return wait, at_speed
 
 
 def _spindle(data: Table, maximum: int) -> Spindle | None:
@@ -406,10 +436,10 @@ def _check_shared(
 
 
 def _parts(
-    ends: Sequence[AxisEnds], switches: Switches, spindle_maximum: int, has_spindle: bool
+    ends: Sequence[AxisEnds], switches: Switches, spindle_maximum: int, has_spindle: bool, at_speed: int
 ) -> tuple[str, ...]:
     needs = {
-        "inputs": switches.probe or any(end.switches for end in ends),
+        "inputs": switches.probe or any(end.switches for end in ends) or at_speed > 0,
         "encoders": has_spindle or any(end.encoders for end in ends),
         "outputs": spindle_maximum > 0,
     }
@@ -417,7 +447,12 @@ def _parts(
 
 
 def _board(
-    data: Table, wanted: int | None, ends: Sequence[AxisEnds], axes: int, parts: Sequence[str]
+    data: Table,
+    wanted: int | None,
+    ends: Sequence[AxisEnds],
+    axes: int,
+    parts: Sequence[str],
+    at_speed: int,
 ) -> tuple[str, int]:
     """The board, if there is one, and the clock that is wanted, or that of the board with these parts."""
     if "board" not in data:
@@ -439,6 +474,9 @@ def _board(
         if board.shared and len(end.switches) > 1:
             both = " and ".join(end.switches)
             raise BadValueError(f"axis {number}: switches: the board {name} has one pin for {both}")
+        if board.shared and number == at_speed and end.switches:
+            both = f"{end.switches[0]} of axis {number}"
+            raise BadValueError(f"spindle_at_speed: the board {name} has one pin for P{at_speed} and {both}")
     if wanted not in (None, parameters["CLOCK_HZ"]):
         raise BadValueError(
             f"clock_hz is {wanted}, but the PLL of the board {name} makes {parameters['CLOCK_HZ']}"

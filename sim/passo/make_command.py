@@ -152,6 +152,10 @@ def _check_firmware(machine: MachineFile) -> None:
         raise BadInputError(
             f'{machine.path}: spindle: the firmware for {chip} has no threads, chip = "{LARGE}" has'
         )
+    if machine.spindle_wait and chip != LARGE:
+        raise BadInputError(
+            f'{machine.path}: spindle_wait: the firmware for {chip} waits for no spindle, chip = "{LARGE}" does'
+        )
     if machine.gcode.left_out and chip != LARGE:
         raise BadInputError(
             f"{machine.path}: the axes are {' '.join(machine.letters)}; "
@@ -248,6 +252,8 @@ def _end(machine: MachineFile, chosen: Board, host: dict[str, str], name: str, i
         return f"encoder of the spindle: {SPINDLE_PORTS[name]}" if name in ENCODER_PORTS else ""
     if name in AXIS_PORTS:
         return f"drive {machine.motors[index]}: {AXIS_PORTS[name]}"
+    if name == "home" and index + 1 == machine.spindle_at_speed:
+        return "spindle: at its speed"
     if name in SWITCH_PORTS:
         served = [
             port
@@ -322,6 +328,7 @@ def definitions(machine: MachineFile) -> dict[str, Any]:
         **_motors(machine.settings.motors),
         **(_squares(machine) if machine.squared else {}),
         **({"TURN_COUNTS": machine.gcode.turn_counts} if machine.spindle else {}),
+        **({"AT_SPEED": machine.spindle_at_speed} if machine.spindle_at_speed else {}),
         **({"ENCODERS": ",".join(map(str, encoders_of(machine)))} if machine.encoders else {}),
     }
 

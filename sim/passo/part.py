@@ -16,6 +16,7 @@ from passo.engine import Engine
 from passo.expand.expander import Options, expand_file, needs_expanding
 from passo.expand.height_map import HeightMap
 from passo.expand.place import Place
+from passo.expand.refusals import SLOW
 from passo.expand.tools import Tool, lengths
 from passo.failure import BadInputError
 from passo.gcode import NANOMETERS, GcodeError, has_words, lines
@@ -259,7 +260,8 @@ def _say(text: str) -> None:
 def core_of(machine: MachineFile) -> Parameters:
     """The core that plays parts; the encoder of a spindle is at the inputs behind the motors."""
     core = parameters_for(machine.core_axes)
-    return replace(core, encoders=int("encoders" in machine.parts), outputs=int(machine.spindle is not None))
+    outputs = machine.turns or machine.spindle_wait > 0
+    return replace(core, encoders=int("encoders" in machine.parts), outputs=int(outputs))
 
 
 def plan_part(
@@ -299,9 +301,9 @@ def play_part(
     configure(driver, machine)
     program = Program(driver, machine.settings, machine.gcode, look_ahead)
     program.begin(part.begin.gcode, part.begin.steps)
-    spindle = SpindleAt(engine, machine) if machine.spindle else None
-    if spindle:
-        program.c.machine.spindle = motors
+    spindle = SpindleAt(engine, machine) if machine.turns else None
+    program.c.machine.spindle = motors
+    program.wait(machine.spindle_wait, machine.spindle_at_speed)
     passes = _Passes(program, engine)
 
     def poll() -> None:
@@ -324,9 +326,12 @@ def play_part(
                 poll()
             if spindle:
                 spindle.drive(program.power)
+                program.say_at_speed(spindle.is_at_speed)
                 polls = FOLLOWS_PER_SECOND if program.follows else LOOPS_PER_SECOND
                 loop.period = machine.clock_hz // polls
             loop.turn(poll, lambda: program.rests)
+            if program.is_slow:
+                raise BadInputError(f"{part.places[taken - 1]}: {slow(machine)}")
             if program.chords != last:
                 last, quiet = program.chords, engine.clock
                 progress(last)
@@ -348,6 +353,11 @@ def play_part(
         *(steps.events, steps.origin, _following(driver, machine), canceled),
         *([passes.found, spindle.changes()] if spindle else []),
     )
+
+
+def slow(machine: MachineFile) -> str:
+    """The spindle was not at its speed in time."""
+    return SLOW.format(input=machine.spindle_at_speed, seconds=f"{machine.spindle_wait:g}")
 
 
 def _following(driver: Driver, machine: MachineFile) -> dict[str, float]:

@@ -120,6 +120,7 @@ def plan_lines(
     inputs = machine.gcode.simulated_inputs()
     config.program.path = machine.settings.struct(parameters)[0]
     config.program.gcode, config.program.inputs = machine.gcode.struct()[0], inputs
+    config.program.spin_up = int(machine.spindle_wait > 0)  # us: it rests where a run waits
     config.length, config.look_ahead, config.period = len(whole), look_ahead, machine.clock_hz // polls
     config.core_axes = parameters.axes
     config.line_queue_log2, config.ramp_queue_log2 = parameters.line_queue_log2, parameters.ramp_queue_log2

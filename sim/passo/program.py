@@ -9,6 +9,8 @@ from passo.gcode import GcodeError, GcodeSettings
 from passo.native import ffi, planner
 from passo.path import LOOK_AHEAD, PathSettings
 
+MICROSECONDS = 1_000_000
+
 
 class Program:
     """A `struct passo_program` on a channel, whose axes are configured. Methods raise DriverError."""
@@ -68,6 +70,20 @@ class Program:
         if self.follows:
             return self.c.player.thread.output & 0xFFFF
         return self._c.passo_gcode_output(ffi().addressof(self.c, "gcode")) & 0xFFFF
+
+    def wait(self, seconds: float, at_speed: int) -> None:
+        """Motions wait for the spindle: a time, or until it says by an input of M66 that it is at its speed."""
+        self.c.machine.spin_up, self.c.machine.at_speed = round(seconds * MICROSECONDS), at_speed
+
+    def say_at_speed(self, level: bool) -> None:
+        """The level of that input."""
+        if at_speed := self.c.machine.at_speed:
+            self._inputs[0] = self._inputs[0] & ~(1 << at_speed) | level << at_speed
+
+    @property
+    def is_slow(self) -> bool:
+        """Whether it has not said so in time."""
+        return self.c.slow
 
     def line(self, line: bytes) -> None:
         """Execute a line, when ready; raises GcodeError."""

@@ -42,6 +42,12 @@ class SpindleAt:
                 if keep and number == 0:
                     self._found.append(np.frombuffer(ffi().buffer(changes), CHANGE, count).copy())
 
+    @property
+    def is_at_speed(self) -> bool:
+        """Whether it turns as it was asked to."""
+        c, rig = self._rigs[0]
+        return c.passo_rig_at_speed(rig, self._wheel)
+
     def changes(self) -> np.ndarray:
         """The changes (CHANGE) of the pins of the encoder."""
         self.drive(0)
@@ -51,7 +57,7 @@ class SpindleAt:
 @contextmanager
 def turning_machine_at(name: str, machine: MachineFile) -> Iterator[tuple[Any, SpindleAt | None]]:
     """An engine with the machine at its pins, and its spindle, if that has an encoder."""
-    if not machine.spindle:
+    if not machine.turns:
         with machine_at(name, machine) as engine:
             yield engine, None
         return

@@ -15,6 +15,7 @@ from passo.expand import refusals
 from passo.expand.expander import NEEDS
 from passo.expand.flow import FLOW
 from passo.gcode import AXIS_LETTERS
+from passo.grbl_setup import SPINDLE_TICKS, TICKS_PER_COUNT
 from passo.machine_file import AxisEnds, Spindle, Switches
 from passo.move_file import PIN_KEYS, PIN_SECONDS
 from passo.move_forms import DECIMALS_MAX, NUMBER_MAX, SIGNED_MAX, WHOLE_MAX
@@ -70,6 +71,9 @@ def rules() -> dict[str, Any]:
         "waiting_steps": own.WAITING_STEPS,
         "counts": [own.COUNTS.start, own.COUNTS.stop - 1],
         "wander_max": own.WANDER_MAX,
+        "spindle_wait_max": own.SPINDLE_WAIT_MAX,
+        "ticks_per_count": TICKS_PER_COUNT,
+        "spindle_ticks": SPINDLE_TICKS,
         "pin_clocks_max": PIN_CLOCKS_MAX,
         "pin_default": str(PIN_SECONDS),
         "cores": AXES_OF_CORES,
@@ -88,6 +92,7 @@ def _gcode() -> dict[str, Any]:
         "not_taken": sorted(refusals.NOT_TAKEN),
         "unused": refusals.UNUSED,
         "no_port": refusals.NO_PORT,
+        "slow": refusals.SLOW,
         "letters": refusals.LETTERS,
         "advice": [(letter, codes.start, codes.stop, *told) for letter, codes, _, *told in refusals.ADVICE],
         "otherwise": refusals.OTHERWISE,

@@ -40,7 +40,8 @@ enum passo_grbl_alarm {
 	PASSO_GRBL_HOME_RESET,
 	PASSO_GRBL_HOME_DOOR,
 	PASSO_GRBL_HOME_PULL_OFF,
-	PASSO_GRBL_HOME_MISSED
+	PASSO_GRBL_HOME_MISSED,
+	PASSO_GRBL_SPINDLE_SLOW = 14 /* as in grblHAL: it is not at its speed in time */
 };
 
 /* Machine description; must outlive the console. Masks have a bit per axis. */
@@ -58,6 +59,9 @@ struct passo_grbl_setup {
 #endif
 #ifndef PASSO_WITHOUT_THREADS
 	uint16_t turn_counts; /* of the encoder of the spindle, at the inputs behind the motors; 0: none */
+#endif
+#ifndef PASSO_PLAIN_GCODE
+	uint8_t at_speed; /* see struct passo_player_machine */
 #endif
 	bool probe;                              /* a probe is fitted */
 	const struct passo_storage_pages *pages; /* null: no persistent storage */

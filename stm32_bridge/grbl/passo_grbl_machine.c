@@ -238,6 +238,7 @@ static void apply_travel(struct passo_grbl *grbl)
 		grbl->limits.low[axis] = -settings->axis[PASSO_GRBL_TRAVEL][axis];
 #ifndef PASSO_PLAIN_GCODE
 	grbl->limits.spin_up = (uint32_t)settings->value[PASSO_GRBL_SPIN_UP];
+	grbl->limits.at_speed = grbl->setup->at_speed;
 #endif
 	grbl->player->machine = &grbl->limits;
 }

@@ -11,6 +11,7 @@
 
 #define ACTIONS_MICROSECONDS 200u
 #define MICROSECONDS_PER_SECOND 1000000u
+#define SETTLES_MICROSECONDS 50000u /* until the input of a spindle that is to change its speed counts */
 #define LEVELS_AT 16u /* in the output word */
 
 void passo_player_open(struct passo_player *player, struct passo_gcode *gcode, struct passo_path_feed *feed,
@@ -110,14 +111,34 @@ static enum passo_error try_again(enum passo_error error)
 }
 
 /* Time passes unless held. */
-static bool still_spins(struct passo_player *player)
+static enum passo_error mind_spindle(struct passo_player *player, enum passo_player_event *event)
 {
+#ifdef PASSO_PLAIN_GCODE
+	(void)player, (void)event;
+	return PASSO_OK;
+#else
+	const struct passo_player_machine *machine = player->machine;
 	const uint32_t now = passo_driver_now(player->feed->passo);
 
+	if (!player->spins)
+		return PASSO_OK;
 	if (player->held)
 		player->spins_at = now;
-	player->spins = player->spins && now - player->spins_at < player->machine->spin_up;
-	return player->spins;
+	const uint32_t passed = now - player->spins_at;
+	bool there = machine->at_speed == 0u && passed >= machine->spin_up;
+	if (machine->at_speed > 0u && passed >= SETTLES_MICROSECONDS) {
+		const enum passo_error error = passo_player_hear(player, machine->at_speed, &there);
+
+		if (error != PASSO_OK)
+			return error;
+	}
+	player->spins = !there && passed < machine->spin_up;
+	if (!player->spins && !there) {
+		*event = PASSO_PLAYER_SLOW;
+		passo_player_drop(player);
+	}
+	return PASSO_OK;
+#endif
 }
 
 bool passo_player_follows(const struct passo_player *player)
@@ -401,10 +422,12 @@ static enum passo_error take_actions(struct passo_player *player, enum passo_pla
 		player->restores = error != PASSO_OK;
 		error = try_again(error);
 	}
-	if (PASSO_GCODE_HAS_TOOLS && (player->restores || still_spins(player)))
+	if (PASSO_GCODE_HAS_TOOLS && error == PASSO_OK && !player->restores)
+		error = mind_spindle(player, event);
+	if (PASSO_GCODE_HAS_TOOLS && (player->restores || player->spins))
 		return error;
 	while (error == PASSO_OK && *event == PASSO_PLAYER_NOTHING && !player->probes && !player->paused
-	       && !passo_path_feed_is_urgent(player->feed)
+	       && !(PASSO_GCODE_HAS_TOOLS && player->spins) && !passo_path_feed_is_urgent(player->feed)
 	       && passo_driver_now(passo) - began <= ACTIONS_MICROSECONDS) {
 		if (!player->waits && !passo_gcode_next(player->gcode, &player->action))
 			break;

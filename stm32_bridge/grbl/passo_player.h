@@ -33,7 +33,8 @@ enum passo_player_event {
 	PASSO_PLAYER_PROBED,    /* the probe triggered, or was optional: passo_player.touch, touched */
 	PASSO_PLAYER_NO_PROBE,  /* no probe is fitted */
 	PASSO_PLAYER_UNTOUCHED, /* the probe did not trigger */
-	PASSO_PLAYER_UNEXPECTED /* it had already triggered */
+	PASSO_PLAYER_UNEXPECTED, /* it had already triggered */
+	PASSO_PLAYER_SLOW /* no input has said that the spindle is at its speed; the rest of the line is dropped */
 };
 
 /* Machine description; must outlive the player. */
@@ -42,6 +43,7 @@ struct passo_player_machine {
 	bool limited;                       /* targets must be within low .. high, machine coordinates */
 	passo_gcode_position low, high;
 	uint32_t spin_up;       /* us that a motion waits for the spindle; 0: none */
+	uint8_t at_speed;       /* input of M66 that says so before, or it is an error; 0: the time alone */
 	const uint16_t *inputs; /* levels that M66 reads, P0 is bit 0; NULL: those of the core */
 #ifndef PASSO_WITHOUT_THREADS
 	uint8_t

@@ -6,18 +6,19 @@
 
 #define NEVER (-1)
 
-static enum passo_error read_levels(const struct passo_player *player, uint32_t *levels)
+enum passo_error passo_player_hear(const struct passo_player *player, uint8_t input, bool *level)
 {
-	struct passo_readings readings;
+	struct passo_readings readings = {.probe = false};
+	enum passo_error error = PASSO_OK;
+	uint32_t levels;
 
 	if (player->machine->inputs) {
-		*levels = *player->machine->inputs;
-		return PASSO_OK;
+		levels = *player->machine->inputs;
+	} else {
+		error = passo_read_inputs(player->feed->passo, &readings);
+		levels = (uint32_t)readings.home << 1 | (readings.probe ? 1u : 0u);
 	}
-	const enum passo_error error = passo_read_inputs(player->feed->passo, &readings);
-
-	if (error == PASSO_OK)
-		*levels = (uint32_t)readings.home << 1 | (readings.probe ? 1u : 0u);
+	*level = (levels >> input & 1u) != 0u;
 	return error;
 }
 
@@ -40,14 +41,13 @@ static bool is_as_wanted(uint8_t wanted, bool before, bool now)
 enum passo_error passo_player_listen(struct passo_player *player, enum passo_player_event *event)
 {
 	const struct passo_gcode_action *action = &player->action;
-	uint32_t levels = 0;
-	const enum passo_error error = read_levels(player, &levels);
+	bool now = false;
+	const enum passo_error error = passo_player_hear(player, action->input, &now);
 
 	if (error != PASSO_OK) {
 		passo_player_drop(player);
 		return error;
 	}
-	const bool now = levels >> action->input & 1u;
 	const bool reached = is_as_wanted(action->wanted, player->listened ? player->input > 0 : now, now);
 
 	player->input = now;

@@ -10,6 +10,8 @@
 void passo_player_dwell(struct passo_player *player);
 /* Drops the rest of the line: the program continues from where the path ends. */
 void passo_player_drop(struct passo_player *player);
+/* The level of an input of M66. */
+enum passo_error passo_player_hear(const struct passo_player *player, uint8_t input, bool *level);
 /* M66, at rest: its event once it is over; `waits` until then. */
 enum passo_error passo_player_listen(struct passo_player *player, enum passo_player_event *event);
 /* At rest. An event if there is no probe, or if it has its level already. */

@@ -17,11 +17,14 @@ enum passo_error passo_program_open(struct passo_program *program, struct passo 
 	}
 	for (unsigned axis = 0; axis < PASSO_AXES_MAX; axis++)
 		program->axis[axis] = settings->path.axis[axis];
-	program->machine = (struct passo_player_machine){.axis = program->axis, .inputs = settings->inputs};
+	program->machine = (struct passo_player_machine){.axis = program->axis,
+	    .spin_up = settings->spin_up,
+	    .at_speed = settings->at_speed,
+	    .inputs = settings->inputs};
 #ifndef PASSO_WITHOUT_THREADS
 	program->machine.deviation = settings->path.junction_deviation;
 #endif
-	program->ends = false;
+	program->ends = program->slow = false;
 	passo_path_feed_open(&program->feed, passo, &program->path);
 	passo_gcode_open(&program->gcode, &settings->gcode);
 	passo_player_open(&program->player, &program->gcode, &program->feed, &program->machine);
@@ -55,6 +58,7 @@ enum passo_error passo_program_poll(struct passo_program *program)
 	const enum passo_error error = passo_player_poll(&program->player, &event);
 	if (event == PASSO_PLAYER_PAUSED || event == PASSO_PLAYER_TOOL)
 		passo_player_go_on(&program->player);
+	program->slow |= event == PASSO_PLAYER_SLOW;
 	return error;
 }
 

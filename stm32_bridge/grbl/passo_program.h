@@ -24,9 +24,11 @@ struct passo_program_settings {
 	struct passo_gcode_settings gcode;
 	const uint16_t
 	    *inputs; /* of a simulation, see struct passo_player_machine; NULL: those of the core */
+	uint32_t spin_up; /* see there; so is the next one */
+	uint8_t at_speed;
 };
 
-/* All members but player.chords are private. */
+/* All members but player.chords and `slow` are private. */
 struct passo_program {
 	struct passo_path_planner path;
 	struct passo_path_feed feed;
@@ -35,6 +37,7 @@ struct passo_program {
 	struct passo_player_machine machine;
 	struct passo_player player;
 	bool ends; /* no more lines */
+	bool slow; /* the spindle was not at its speed in time: the rest of a line was dropped */
 };
 
 /* `items` and `capacity`: the look-ahead, see passo_path_open(). The settings are copied. Errors:

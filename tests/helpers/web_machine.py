@@ -23,6 +23,7 @@ def web_machine(machine: MachineFile) -> dict[str, Any]:
         "inputs": machine.gcode.inputs,
         "power": int(machine.gcode.power),
         "turn_counts": machine.gcode.turn_counts,
+        "spindle": [machine.spindle_wait, machine.spindle_at_speed],
         "rows": rows,
         "motors": [
             {"name": name, "per_step": 1 / scale}
@@ -35,7 +36,7 @@ def numbers(machine: MachineFile) -> list[float]:
     """The members of `struct web_machine` (sim/engine/passo_web_program.c)."""
     settings, pins, gcode = machine.settings, machine.pins, machine.gcode
     core_axes = next(axes for axes in AXES_OF_CORES if axes >= machine.core_axes)
-    wheel = spindle_wheel(machine) if machine.spindle else {}
+    wheel = spindle_wheel(machine) if machine.turns else {}
     rest = [0] * (MOTORS_MOST - len(settings.motors.rows))
     members = (
         *(settings.clock_hz, len(settings.axes), settings.junction_deviation),
@@ -43,6 +44,7 @@ def numbers(machine: MachineFile) -> list[float]:
         *(pins.step_high, pins.step_low, pins.dir_setup, pins.dir_hold),
         *(gcode.spindle_maximum, gcode.left_out, gcode.inputs, gcode.power),
         *(wheel.get(key, 0) for key in ("per_turn", "interval", "wander", "start_up")),
+        *(round(machine.spindle_wait * 1e6), machine.spindle_at_speed),
         len(settings.motors.rows),
         *(*settings.motors.bits(1), *rest, *settings.motors.bits(-1), *rest),
         *_limits(settings.motors.mixed),

@@ -46,6 +46,11 @@ LETTERS = {
     "W": "LinuxCNC: an axis beside Z",
 }
 
+SLOW = (
+    "spindle_at_speed: input P{input} has not said within {seconds} s that the spindle is at its speed "
+    "(LinuxCNC, grblHAL): see to its drive, or make spindle_wait longer"
+)
+
 
 def explain(error: GcodeError, words: Sequence[Word], settings: GcodeSettings) -> str:
     """The error of a line with the word that it is about, where that is known."""

@@ -52,8 +52,9 @@ class MachineReader {
         this.readSwitches();
         this.checkSquared();
         const spindle = own(data, "spindle_maximum", 0, (table, key) => readInteger(table, key, 1, RULES.whole_max));
+        [this.wait, this.atSpeed] = this.readWaits(spindle);
         this.parts = RULES.parts.filter(part => ({
-            inputs: this.switches.probe || this.ends.some(end => end.switches.length),
+            inputs: this.switches.probe || this.ends.some(end => end.switches.length) || this.atSpeed,
             encoders: data.has("spindle") || this.ends.some(end => end.encoders.length),
             outputs: spindle > 0,
         })[part]);
@@ -238,6 +239,9 @@ class MachineReader {
         }
         ends.forEach(({ switches }, n) => {
             if (board.shared && switches.length > 1) wrong(`axis ${n + 1}: switches: the board ${name} has one pin for ${switches.join(" and ")}`);
+            if (board.shared && n + 1 === this.atSpeed && switches.length) {
+                wrong(`spindle_at_speed: the board ${name} has one pin for P${n + 1} and ${switches[0]} of axis ${n + 1}`);
+            }
         });
         if (wanted !== null && wanted !== hz) wrong(`clock_hz is ${wanted}, but the PLL of the board ${name} makes ${hz}`);
         return hz;
@@ -300,17 +304,32 @@ class MachineReader {
         }
     }
 
+    // Seconds that motions wait for the spindle, and the input that says that it is at its speed, or 0.
+    readWaits(maximum) {
+        const { data, ends } = this, { own } = MachineReader, most = RULES.spindle_wait_max;
+        const wait = own(data, "spindle_wait", 0);
+        if (wait && !maximum) wrong("spindle_wait: it needs spindle_maximum");
+        if (wait > most) wrong(`spindle_wait must be at most ${most} s`);
+        const input = own(data, "spindle_at_speed", 0, (table, key) => readInteger(table, key, 1, this.rows.length));
+        if (!input) return [wait, 0];
+        if (!wait) wrong("spindle_at_speed: it needs spindle_wait, the seconds after which it is an error");
+        if (ends[input - 1]?.switches.includes("home")) wrong(`spindle_at_speed: input P${input} is the home switch of axis ${input}`);
+        return [wait, input];
+    }
+
     // Counts per turn of its encoder and what its simulation needs, as spindle_wheel() of sim/passo/grbl_setup.py has them; 0: none.
     readSpindle(maximum) {
-        const { data } = this, { own } = MachineReader;
-        if (!data.has("spindle")) return [0, 0, 0, 0];
+        const { data } = this, { own } = MachineReader, one = RULES.ratio_one;
+        if (!data.has("spindle")) {
+            const ticks = RULES.ticks_per_count * this.hz * one / RULES.spindle_ticks;
+            return this.atSpeed ? [0, Math.floor(ticks), 0, rounded(RULES.defaults.start_up * this.hz)] : [0, 0, 0, 0];
+        }
         const table = readSubtable(data, "spindle"), [low, high] = RULES.counts, most = RULES.wander_max;
         checkKnown(table, RULES.keys.spindle);
         if (!maximum) wrong("it needs spindle_maximum");
         const counts = readInteger(table, "counts", low, high);
         const startUp = own(table, "start_up", RULES.defaults.start_up), wander = own(table, "wander", 0);
         if (!startUp || wander > most) wrong(`start_up must be greater than 0, wander at most ${most} %`);
-        const one = RULES.ratio_one;
         return [counts, rounded(this.hz * 60 * one / (maximum * counts)), rounded(wander * one / 100), rounded(startUp * this.hz)];
     }
 
@@ -336,7 +355,7 @@ class MachineReader {
             numbers: [
                 this.hz, axes.length, this.deviation, tolerance, RULES.profiles.indexOf(profile),
                 RULES.cores.find(own => own >= count + Number(this.spindle[0] > 0)), ...this.pins, spindle, leftOut, has("inputs") * (1 + count), has("outputs"),
-                ...this.spindle, map.length, ...bits(1), ...bits(-1), ...limits(mixed), ...axes.flatMap(limits),
+                ...this.spindle, rounded(this.wait * 1e6), this.atSpeed, map.length, ...bits(1), ...bits(-1), ...limits(mixed), ...axes.flatMap(limits),
             ],
             clock_hz: this.hz,
             letters: this.letters,
@@ -344,6 +363,7 @@ class MachineReader {
             inputs: has("inputs") * (1 + count),
             power: has("outputs"),
             turn_counts: this.spindle[0],
+            spindle: [this.wait, this.atSpeed],
             rows,
             motors: this.motors.map((name, n) => ({ name, per_step: 1 / axes[rows[n].findIndex(Boolean)].steps_per_mm.number })),
         };

@@ -11,7 +11,7 @@
 
 const AXES = 4, LISTS = 3;  // of the console's core; lists of edges per axis
 const RUNNING = 8 * LISTS;
-const DONE = 0, GOES_ON = 1;
+const DONE = 0, GOES_ON = 1, SLOW = -2;
 const SLICE = 40, TURNS = 16;  // ms between two looks at messages; turns of the main loop in one call
 const LINE_MAX = 4000;  // bytes
 const SEVERAL = Array.from({ length: AXES }, (_, n) => ({ name: `${n}`, per_step: 1 }));
@@ -125,10 +125,13 @@ class Core {
         let status = this.c.begin();
         const whole = Math.max(1, this.c.length());
         if (status === GOES_ON) status = await this.through(() => this.c.go(TURNS), clock_hz, () => this.c.taken_bytes() / whole);
-        const said = this.said().trim(), blamed = this.c.blamed();
+        const said = status === SLOW ? this.slow(machine) : this.said().trim(), blamed = this.c.blamed();
         if (status !== DONE && status !== GOES_ON) return { wrong: [blamed ? `${at(blamed)}: ${said}` : said], motion: null };
         return { wrong: [], motion: this.motion(motors, clock_hz, "mm", status === DONE ? "" : `canceled at ${at(this.c.taken())}`) };
     }
+
+    // The spindle was not at its speed in time.
+    slow({ spindle: [wait, input] }) { return this.rules.slow.replace("{input}", input).replace("{seconds}", short(wait)); }
 
     // Executes lines of the console on a core after reset. Returns what it said, and a motion or null.
     async type(lines, hz) {

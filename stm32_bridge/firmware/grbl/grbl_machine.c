@@ -8,6 +8,7 @@
 #define AXES_USED (AXES > 0 ? AXES : GRBL_AXES_MAX)
 #define AXES_NEEDED ((MOTORS > 0 ? MOTORS : AXES > 0 ? AXES : 1) + (TURN_COUNTS > 0))
 #define UM_PER_MM 1000
+#define SPIN_UP 10 /* s, where an input says when it is over */
 #define LINEAR_AXES 2u /* X and Y; Z and what follows are slow */
 
 static const uint16_t VALUES[PASSO_GRBL_SETTINGS] = {
@@ -26,6 +27,7 @@ static const uint16_t VALUES[PASSO_GRBL_SETTINGS] = {
     [PASSO_GRBL_TOUCH_FEED] = 25,
     [PASSO_GRBL_TOUCH_SEEK] = 200,
     [PASSO_GRBL_TOUCH_PULL_OFF] = 200,
+    [PASSO_GRBL_SPIN_UP] = AT_SPEED != 0 ? SPIN_UP : 0,
 #endif
 };
 
@@ -56,7 +58,10 @@ static void grbl_defaults(struct passo_grbl_settings *settings)
 _Static_assert(AXES <= GRBL_AXES_MAX, "the image has fewer axes");
 #ifdef PASSO_PLAIN_GCODE
 _Static_assert(AXES_LEFT_OUT == 0, "the image has the axes X Y Z A B C without a gap");
+_Static_assert(AT_SPEED == 0, "the image does not wait for a spindle");
 #endif
+_Static_assert(AT_SPEED <= PASSO_PATH_AXES_MAX && (HOMES << 1 >> AT_SPEED & 1) == 0,
+    "the input of a spindle is the home input of a motor that has no home switch");
 #ifdef PASSO_CARTESIAN
 _Static_assert(MOTORS == 0, "the image has a motor for each axis");
 _Static_assert(!HAS_ENCODERS, "the image has no encoders");
@@ -88,7 +93,7 @@ _Static_assert(TURN_COUNTS <= UINT16_MAX, "a turn has at most 65535 counts");
 
 enum passo_error grbl_machine_check(struct passo *passo)
 {
-	const bool inputs = (LIMITS_LOW | LIMITS_HIGH | HOMES | PROBE) != 0;
+	const bool inputs = (LIMITS_LOW | LIMITS_HIGH | HOMES | PROBE | AT_SPEED) != 0;
 
 	if (passo_machine(passo)->axes < AXES_NEEDED)
 		return PASSO_ERROR_PARAMETERS;
@@ -121,6 +126,9 @@ void grbl_machine(
 		setup->path.machine.axes = AXES_USED;
 #ifndef PASSO_WITHOUT_THREADS
 	setup->turn_counts = TURN_COUNTS;
+#endif
+#ifndef PASSO_PLAIN_GCODE
+	setup->at_speed = AT_SPEED;
 #endif
 #ifndef PASSO_CARTESIAN
 	set_motors(&setup->path);

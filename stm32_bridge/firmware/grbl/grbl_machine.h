@@ -92,6 +92,12 @@
 #define TURN_COUNTS 0
 #endif
 
+/* Input P of M66, 1 and up, that says that the spindle is at its speed; 0: the time of $394 alone. Not in an
+ * image with PASSO_PLAIN_GCODE. */
+#ifndef AT_SPEED
+#define AT_SPEED 0
+#endif
+
 /* Axes that `$H` homes, by their home or limit switch. */
 #ifndef HOMED
 #define HOMED HOMES
