@@ -3,6 +3,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -51,13 +52,11 @@ def played(folder: Path, machine: MachineFile, text: str = PROGRAM) -> Played:
     ],
 )
 def test_a_run_waits(tmp_path: Path, head: str, first: float, second: float) -> None:
-    """After M3 and after a reversal, also in the line that reverses; not after M5. The preview has these rests."""
+    """After M3 and after a reversal, also in the line that reverses; not after M5. A preview rests too."""
     machine = machine_of(tmp_path, head)
     made = played(tmp_path, machine)
     assert not made.problems() and made.end == [5 * 80, 0, 0]
-    waited = [
-        (begin - end) / machine.clock_hz for (_, end), (begin, _) in zip(made.motions, made.motions[1:])
-    ]
+    waited = [(begin - end) / machine.clock_hz for (_, end), (begin, _) in pairwise(made.motions)]
     assert len(waited) == 2 * (first > 0)
     for own, wanted in zip(waited, (first, second), strict=False):
         assert wanted <= own < wanted + 0.02
@@ -204,7 +203,7 @@ def test_what_is_made_of_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     machine = machine_of(tmp_path, 'chip = "STM32F103CB"\n' + text)
     assert main(["make", str(machine.path), "--no-build", "--out", str(tmp_path / "out")]) == 0
     wiring = (tmp_path / "out" / "wiring.txt").read_text().splitlines()
-    assert [line for line in wiring if line.startswith("home[1]")][0].endswith("spindle: at its speed")
+    assert next(line for line in wiring if line.startswith("home[1]")).endswith("spindle: at its speed")
     assert "$394=2" in make_command.settings_lines(machine)
     hal = "\n".join(linuxcnc_files(machine)[HAL])
     assert "net spindle-ready passo.0.gpio.006.in => spindle.0.at-speed" in hal

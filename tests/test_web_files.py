@@ -22,6 +22,7 @@ from passo.web import EXAMPLE
 from benchmarks.rigid_tapping import AXIS
 from tests.helpers.browser import Browser
 from tests.helpers.firefox import Firefox
+from tests.test_refusals import LINES
 from tests.test_web import ANSWER, READY, VERDICT, saved, verdict_of
 
 PYODIDE = pytest.mark.skipif(
@@ -45,10 +46,10 @@ def browser(kept: Browser, page: str) -> Browser:
     return kept
 
 
-def dropped(browser: Browser | Firefox, files: dict[str, str]) -> str:
+def dropped(browser: Browser | Firefox, files: dict[str, str] | list[tuple[str, str]]) -> str:
     """Drop files on the page; the verdict."""
     done = browser.value("web.done")
-    given = json.dumps(list(files.items()))
+    given = json.dumps(list(files.items()) if isinstance(files, dict) else files)
     browser.value(
         "(() => { const data = new DataTransfer();"
         f"for (const [name, text] of {given}) data.items.add(new File([text], name));"
@@ -124,6 +125,71 @@ def test_wrong_files_are_said_as_the_command_says_them(browser: Browser, tmp_pat
         dropped(browser, files)
         assert browser.value(ANSWER) == wanted
     assert wanted.splitlines()[-1] == "and 6 more lines"
+
+
+def test_each_error_is_said_as_the_command_says_it(browser: Browser, tmp_path: Path) -> None:
+    """Word, norm and advice, of all lines of which tests/test_refusals.py asks for them."""
+    machine, count = read_machine(EXAMPLE / "machine.toml"), 0
+    lines = [line for _, line in LINES if "%" not in line]
+    for at in range(0, len(lines), 15):
+        text = "\n".join(f"G17 G21 G54 G90 G94\n{line}" for line in lines[at : at + 15])
+        folder = tmp_path / str(at)
+        folder.mkdir()
+        wanted = refused(folder, machine, {"a.nc": text, "b.nc": "G0 X1"})
+        dropped(browser, {"a.nc": text, "b.nc": "G0 X1"})
+        assert browser.value(ANSWER) == wanted
+        count += wanted.count("error:")
+    assert count > 100
+
+
+def test_two_programs_of_one_name(browser: Browser, page: str, tmp_path: Path) -> None:
+    """They play in the order in which they are given, also when shown again, and from a link."""
+    files = [
+        ("part.nc", "G21 G91 F900\nG1 X2\n"),
+        ("a.nc", "G1 F900 Y1"),
+        ("part.nc", "G91 G1 F900 X-1 Y1\nM2\n"),
+    ]
+    assert dropped(browser, files) == "done"
+    names = ["a.nc", "part.nc", "part (2).nc"]
+    shown = "web.edited.map(file => [file.name, file.text])"
+    texts = [files[1][1], files[0][1], files[2][1]]
+    assert browser.value(shown) == [list(pair) for pair in zip(names, texts, strict=True)]
+    paths_ = []
+    for folder, (name, text) in zip("abc", (files[1], files[0], files[2]), strict=True):
+        (tmp_path / folder).mkdir()
+        paths_.append(tmp_path / folder / name)
+        paths_[-1].write_text(text)
+    machine = str(EXAMPLE / "machine.toml")
+    assert main(["run", *map(str, paths_), "--machine", machine, "--out", str(tmp_path / "out")]) == 0
+    csv = (tmp_path / "out" / "pulses.csv").read_bytes()
+    assert saved(browser, "csv") == csv
+    browser.value("web.choose(2)")
+    assert browser.value("web.text") == files[2][1]
+    link = browser.value("toFragment(web.state)")
+    browser.open("about:blank")
+    browser.open(page + link, READY)
+    assert browser.value(VERDICT) == "done" and saved(browser, "csv") == csv
+    dropped(browser, [*files, ("part.nc", "G1 X1\nM117\n")])
+    assert str(browser.value(ANSWER)).startswith("part (3).nc:2: error:20: ")
+
+
+@PYODIDE
+def test_subroutines_of_one_name(browser: Browser, tmp_path: Path) -> None:
+    """The same one twice is one; of two a program cannot know which it calls."""
+    twice = [*CALLS.items(), ("slot.ngc", CALLS["slot.ngc"])]
+    assert dropped(browser, twice) == "done"
+    assert browser.value("web.edited.map(file => file.name)") == sorted(CALLS)
+    other = ("slot.ngc", CALLS["slot.ngc"].replace("Y#2", "Y3"))
+    said = "error: two files slot.ngc have subroutines: open one of them"
+    assert dropped(browser, [*CALLS.items(), other]) == said
+    browser.value("web.choose(1)")
+    assert browser.value("web.edited.filter(file => file.clashes).length") == 1
+    main_of_this_name = [*CALLS.items(), ("slot.ngc", "G0 X1\n")]
+    assert dropped(browser, main_of_this_name) == "done"
+    assert browser.value("web.edited.map(file => [file.name, file.plays])")[-2:] == [
+        ["slot.ngc", False],
+        ["slot (2).ngc", True],
+    ]
 
 
 CALLS = {

@@ -169,7 +169,7 @@ def attach(
 ) -> Any:
     """A simulated machine at the core; returns the rigs, with their libraries.
 
-    `spindle`: its encoder, if there is one, is behind the motors; it turns at full speed while output 0 is on.
+    `spindle`: its encoder, if it has one, is behind the motors; it turns at full speed while output 0 is on.
     """
     config = rig_config(engine, machine, skews, per_turn)
     if not spindle:

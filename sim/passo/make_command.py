@@ -154,7 +154,8 @@ def _check_firmware(machine: MachineFile) -> None:
         )
     if machine.spindle_wait and chip != LARGE:
         raise BadInputError(
-            f'{machine.path}: spindle_wait: the firmware for {chip} waits for no spindle, chip = "{LARGE}" does'
+            f"{machine.path}: spindle_wait: the firmware for {chip} waits for no spindle, "
+            f'chip = "{LARGE}" does'
         )
     if machine.gcode.left_out and chip != LARGE:
         raise BadInputError(

@@ -9,14 +9,13 @@ import numpy as np
 
 from passo.build import Parameters
 from passo.driver import DriverError
-from passo.expand.refusals import explain_text
+from passo.expand.refusals import NO_PROBE, explain_text, no_probe
 from passo.gcode import GcodeError, GcodeSettings, set_tool_lengths
 from passo.link import error_text
 from passo.machine_file import MachineFile
 from passo.native import ffi, planner, previewer
 
 CHUNK = 2000  # lines between two reports of progress
-NO_PROBE = -1
 # struct passo_preview_line and struct passo_preview_ramp
 LINE = np.dtype(
     [
@@ -44,7 +43,7 @@ class Refused:
     def why(self, text: bytes, settings: GcodeSettings) -> str:
         """What is wrong with the line, and what to write instead."""
         if self.error == NO_PROBE:
-            return "no probe is fitted: --surface MAP.csv simulates one"
+            return no_probe(text.decode("utf-8", "replace"))
         if self.error < NO_PROBE:
             return error_text(NO_PROBE - self.error)
         return explain_text(GcodeError(self.error), text.decode("utf-8", "replace"), settings)

@@ -72,7 +72,7 @@ class Program:
         return self._c.passo_gcode_output(ffi().addressof(self.c, "gcode")) & 0xFFFF
 
     def wait(self, seconds: float, at_speed: int) -> None:
-        """Motions wait for the spindle: a time, or until it says by an input of M66 that it is at its speed."""
+        """Motions wait for the spindle: a time, or until an input of M66 says that it is at its speed."""
         self.c.machine.spin_up, self.c.machine.at_speed = round(seconds * MICROSECONDS), at_speed
 
     def say_at_speed(self, level: bool) -> None:

@@ -96,6 +96,13 @@ def _gcode() -> dict[str, Any]:
         "letters": refusals.LETTERS,
         "advice": [(letter, codes.start, codes.stop, *told) for letter, codes, _, *told in refusals.ADVICE],
         "otherwise": refusals.OTHERWISE,
+        "norms": refusals.NORMS,
+        "nist": refusals.NIST,
+        "said": refusals.SAID,
+        "needed": refusals.NEEDED,
+        "unread": sorted(refusals.UNREAD),
+        "no_probe": refusals.NO_PROBE,
+        "good": refusals.GOOD,
         "expanded": (f"^{FLOW.pattern}", NEEDS.pattern),
     }
 

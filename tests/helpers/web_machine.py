@@ -23,7 +23,7 @@ def web_machine(machine: MachineFile) -> dict[str, Any]:
         "inputs": machine.gcode.inputs,
         "power": int(machine.gcode.power),
         "turn_counts": machine.gcode.turn_counts,
-        "spindle": [machine.spindle_wait, machine.spindle_at_speed],
+        "spindle": [f"{machine.spindle_wait:g}", machine.spindle_at_speed],
         "rows": rows,
         "motors": [
             {"name": name, "per_step": 1 / scale}

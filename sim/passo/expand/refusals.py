@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: MIT
 """What to say of a word that Passo does not take: the norm it is from, and what to write instead."""
 
+import re
 from collections.abc import Sequence
 
-from passo.expand.block import Word, words_of
+from passo.expand.block import Word, split, words_of
 from passo.gcode import AXIS_LETTERS, Gcode, GcodeError, GcodeSettings
 
 NOT_TAKEN = frozenset((3, 20, 23))  # errors of a command that Passo does not have
-UNUSED, NO_PORT = 36, 39
+UNREAD = frozenset((1, 2))  # of what is no word
+UNUSED, NO_PORT, NO_PROBE = 36, 39, -1
 # By the command in tenths, or a range of them: error of a firmware, of the first one that it has not, norm,
 # and what to do.
 ADVICE: tuple[tuple[str, range, int, str, str], ...] = (
@@ -45,36 +47,123 @@ LETTERS = {
     "V": "LinuxCNC: an axis beside Y",
     "W": "LinuxCNC: an axis beside Z",
 }
-
+# The same of words that it has, for those that are not of NIST alone; docs/gcode.md has the table.
+NORMS = {
+    word: norm
+    for norm, words in {
+        "LinuxCNC": "G7 G8 G33 G33.1 G43 G43.1 G43.2 G49 G61 G61.1 G64 G96 G97 M62 M63 M64 M65 M66 M67 M68",
+        "NIST, LinuxCNC": "G73 G81 G82 G83 G85 G86 G89 M6 M61",
+        "grbl, LinuxCNC": "G10 G28 G28.1 G30 G30.1 G38.2 G38.3 G38.4 G38.5 G91.1 G93 G94 G95",
+        "grbl": "G20 G21 G53 G80 M0 M1 M2 M30 F S T N D E H I J K R L P Q",
+    }.items()
+    for word in words.split()
+}
+NIST = "NIST"  # of all others
+# The letters that commands need.
+NEEDED = {
+    command: letters
+    for letters, commands in {
+        "P": "G4 M62 M63 M64 M65",
+        "L and P": "G10",
+        "P, and Q if L is not 0": "M66",
+        "E and Q": "M67 M68",
+        "R, Q and the depth": "G73 G83",
+        "R and the depth": "G81 G82 G85 G86 G89",
+        "K": "G33 G33.1",
+        "H": "G43.2",
+        "Q": "M61",
+        "S": "G96",
+    }.items()
+    for command in commands.split()
+}
+# By error: kinds of words that it may be about, in this order, of which one is named without which the line
+# is right, or has another error, or else the first; and what to do.
+SAID = {
+    1: ("", "a line has words, each of a letter and a number: passo expand takes parameters and O words"),
+    2: ("", "write a number of at most nine digits before the point: passo expand takes expressions"),
+    4: ("[A-Z]-.*", "write a number that is not negative"),
+    11: ("", "write at most 127 characters, not counting blanks and comments"),
+    20: ("[LR].*|O.*|G.*|M.*", "write another value, or another command"),
+    21: ("[GM].*", "write one of the two, or two lines"),
+    22: ("G.*|[XYZABC].*", "write F before, in units per minute"),
+    23: ("[GM].*", "write the number of a command that there is"),
+    24: ("G.*", "write two lines"),
+    25: ("[^GM].*", "write it once"),
+    26: ("G.*", "add the axes: " + " ".join(AXIS_LETTERS)),
+    27: ("N.*", "number lines up to 9999999, or not at all"),
+    28: ("[GM].*", "add {}"),
+    29: ("P.*", "write P1 to P6 for G54 to G59"),
+    30: ("G53", "write G0 or G1 in this line"),
+    31: ("[XYZABC].*", "write G0, G1 or another motion before"),
+    32: ("G[23]", "write an end in the plane, or I and J of a full circle"),
+    33: ("G[23]|[XYZABC].*|G.*|.*", "look at the end and the center, or at how far it is"),
+    34: ("R.*", "write a larger R, or I and J"),
+    35: ("G[23]|[XYZABC].*", "add I, J, K or R"),
+    36: ("[DEHIJKLPQR].*", "leave it out, or write the command that takes it"),
+    37: ("[XYABC].*|G.*", "write Z alone"),
+    38: ("[THPQ].*", "write a tool up to 255; the table has T1 to T100"),
+    39: ("M6[2-8]", ""),
+    42: ("G33.*|G9[56]|G.*|[XYZABC].*", "write M3 or M4, and S, before"),
+    NO_PROBE: (r"G38\..*", ""),
+}  # fmt: skip
 SLOW = (
     "spindle_at_speed: input P{input} has not said within {seconds} s that the spindle is at its speed "
     "(LinuxCNC, grblHAL): see to its drive, or make spindle_wait longer"
 )
+GOOD = r"[a-z][-+]?(?:[0-9]{1,9}(?![0-9])\.?[0-9]*|\.[0-9]+)"  # a word whose number can be read
 
 
 def explain(error: GcodeError, words: Sequence[Word], settings: GcodeSettings) -> str:
-    """The error of a line with the word that it is about, where that is known."""
-    axes = settings.axis_letters
-    if error.number == NO_PORT:
-        return f"{error}: {_ports(settings)}"
-    if error.number == UNUSED and (word := next((word for word in words if word.letter == "E"), None)):
-        return f"{error}: {word} ({LETTERS['E']})"
-    if error.number not in NOT_TAKEN:
-        return str(error)
-    for word in words:
+    """The error of a line with the word that it is about, the norm of that, and what to do."""
+    axes, number = settings.axis_letters, error.number
+    for word in words if number in NOT_TAKEN else ():
         if word.letter in AXIS_LETTERS and word.letter not in axes:
-            return f"{error}: {word}: the machine has the axes {' '.join(axes)}"
+            return f"{error}: {word} ({NIST}): the machine has the axes {' '.join(axes)}"
         if word.letter in LETTERS and not _is_taken(word, settings):
             return f"{error}: {word} ({LETTERS[word.letter]})"
         if word.letter in "GM" and not _is_taken(word, settings):
             norm, advice = _advice(word)
             return f"{error}: {word} ({norm}): {advice}"
-    return str(error)
+    patterns, advice = SAID.get(number, ("", "see docs/gcode.md"))
+    word = _culprit(number, patterns.split("|"), words, settings)
+    if number == UNUSED and word and word.letter in LETTERS:
+        return f"{error}: {word} ({LETTERS[word.letter]})"
+    named = f"{word} ({norm_of(word)})" if word else f"the line ({NIST})"
+    needed = NEEDED.get(str(word), "what it needs")
+    return f"{error}: {named}: {advice.format(needed) if number != NO_PORT else _ports(settings)}"
 
 
 def explain_text(error: GcodeError, text: str, settings: GcodeSettings) -> str:
     """The same for a line as text."""
+    if error.number in UNREAD and (bad := re.sub(GOOD, " ", split(text)[0]).split()):
+        return f"{error}: {bad[0].upper()} ({NIST}): {SAID[error.number][1]}"
     return explain(error, words_of(text), settings)
+
+
+def no_probe(text: str) -> str:
+    """Of a line that probes, on a machine without a probe."""
+    words = [word for word in words_of(text) if re.fullmatch(SAID[NO_PROBE][0], str(word))]
+    word = words[0] if words else Word("G", 38)
+    return f"no probe is fitted: {word} ({NORMS['G38.2']}): --surface MAP.csv simulates one"
+
+
+def norm_of(word: Word) -> str:
+    """The authority for a word that is taken."""
+    return NORMS.get(str(word) if word.letter in "GM" else word.letter, NIST)
+
+
+def _culprit(
+    number: int, patterns: Sequence[str], words: Sequence[Word], settings: GcodeSettings
+) -> Word | None:
+    """The word that an error is about, if one is known."""
+    found = [
+        at for kind in patterns for at, word in enumerate(words) if kind and re.fullmatch(kind, str(word))
+    ]
+    left = {
+        at: _number(" ".join(str(word) for n, word in enumerate(words) if n != at), settings) for at in found
+    }
+    right, other = [at for at in found if not left[at]], [at for at in found if left[at] != number]
+    return words[(right + other + found)[0]] if found else None
 
 
 def _ports(settings: GcodeSettings) -> str:
@@ -85,12 +174,17 @@ def _ports(settings: GcodeSettings) -> str:
     return f"there are the outputs P0 to P3, {inputs}, {power}"
 
 
-def _is_taken(word: Word, settings: GcodeSettings) -> bool:
+def _number(line: str, settings: GcodeSettings) -> int:
+    """The error of a line alone."""
     try:
-        Gcode(settings).execute(str(word))
+        Gcode(settings).execute(line)
     except GcodeError as error:
-        return error.number not in NOT_TAKEN
-    return True
+        return error.number
+    return 0
+
+
+def _is_taken(word: Word, settings: GcodeSettings) -> bool:
+    return _number(str(word), settings) not in NOT_TAKEN
 
 
 def _advice(word: Word) -> tuple[str, str]:

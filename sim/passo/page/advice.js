@@ -4,9 +4,9 @@
 "use strict";
 
 class Advice {
-    // `isTaken(word)`: whether the interpreter has a command or word; `inputs`: number of those of M66.
-    constructor(rules, { letters, inputs, power }, isTaken) {
-        Object.assign(this, { rules, letters, inputs, power, isTaken });
+    // `number(line)`: the error of a line alone; `inputs`: number of those of M66.
+    constructor(rules, { letters, inputs, power }, number) {
+        Object.assign(this, { rules, letters, inputs, power, number });
     }
 
     // Whether a program has what only expanded ones may have.
@@ -28,23 +28,42 @@ class Advice {
         });
     }
 
-    // An error of a line with the word that it is about, where that is known.
+    // An error of a line with the word that it is about, the norm of that, and what to do.
     explain(number, error, line) {
-        const { rules, letters } = this, words = Advice.words(Advice.bare(line));
-        if (number === rules.no_port) return `${error}: ${this.ports}`;
-        const printer = words.find(({ letter }) => letter === "E");
-        if (number === rules.unused && printer) return `${error}: ${printer.text} (${rules.letters.E})`;
-        if (!rules.not_taken.includes(number)) return error;
-        for (const { letter, code, text } of words) {
-            if (rules.axes.includes(letter) && !letters.includes(letter)) return `${error}: ${text}: the machine has the axes ${[...letters].join(" ")}`;
+        const { rules, letters } = this, bare = Advice.bare(line), words = Advice.words(bare);
+        const [bad] = bare.replace(new RegExp(rules.good, "g"), " ").split(" ").filter(Boolean), known = rules.said[number] ?? ["", "see docs/gcode.md"];
+        if (rules.unread.includes(number) && bad) return `${error}: ${bad.toUpperCase()} (${rules.nist}): ${known[1]}`;
+        for (const { letter, code, text } of rules.not_taken.includes(number) ? words : []) {
+            if (rules.axes.includes(letter) && !letters.includes(letter)) return `${error}: ${text} (${rules.nist}): the machine has the axes ${[...letters].join(" ")}`;
             if (letter in rules.letters && !this.isTaken(text)) return `${error}: ${text} (${rules.letters[letter]})`;
             if ("GM".includes(letter) && !this.isTaken(text)) {
-                const known = rules.advice.find(([own, start, stop]) => own === letter && code >= start && code < stop);
-                const [norm, advice] = known ? known.slice(3) : rules.otherwise;
+                const own = rules.advice.find(([first, start, stop]) => first === letter && code >= start && code < stop);
+                const [norm, advice] = own ? own.slice(3) : rules.otherwise;
                 return `${error}: ${text} (${norm}): ${advice}`;
             }
         }
-        return error;
+        const word = this.culprit(number, known[0].split("|"), words), needed = rules.needed[word?.text] ?? "what it needs";
+        if (number === rules.unused && word && word.letter in rules.letters) return `${error}: ${word.text} (${rules.letters[word.letter]})`;
+        const named = word ? `${word.text} (${this.norm(word)})` : `the line (${rules.nist})`;
+        return `${error}: ${named}: ${number === rules.no_port ? this.ports : known[1].replace("{}", needed)}`;
+    }
+
+    // The same of a line that probes, on a machine without a probe.
+    noProbe(error, line) {
+        const pattern = new RegExp(`^(?:${this.rules.said[this.rules.no_probe][0]})$`);
+        const word = Advice.words(Advice.bare(line)).find(({ text }) => pattern.test(text)) ?? { text: "G38" };
+        return `${error}: ${word.text} (${this.rules.norms["G38.2"]}): a height map simulates one`;
+    }
+
+    norm({ letter, text }) { return this.rules.norms["GM".includes(letter) ? text : letter] ?? this.rules.nist; }
+
+    isTaken(text) { return !this.rules.not_taken.includes(this.number(text)); }
+
+    // The word that an error is about, if one is known.
+    culprit(number, patterns, words) {
+        const found = patterns.flatMap(kind => words.filter(({ text }) => kind && new RegExp(`^(?:${kind})$`).test(text)));
+        const left = found.map(word => this.number(words.filter(own => own !== word).map(({ text }) => text).join(" ")));
+        return found.find((_, n) => left[n] === 0) ?? found.find((_, n) => left[n] !== number) ?? found[0];
     }
 
     get ports() {

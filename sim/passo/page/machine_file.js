@@ -363,7 +363,7 @@ class MachineReader {
             inputs: has("inputs") * (1 + count),
             power: has("outputs"),
             turn_counts: this.spindle[0],
-            spindle: [this.wait, this.atSpeed],
+            spindle: [short(this.wait), this.atSpeed],
             rows,
             motors: this.motors.map((name, n) => ({ name, per_step: 1 / axes[rows[n].findIndex(Boolean)].steps_per_mm.number })),
         };

@@ -280,6 +280,8 @@ class Form {
         this.busy(true);
         try {
             if (this.language === GCODE && this.refused) throw new BadValue(this.refused);
+            const clash = this.edited.find(file => file.clashes);
+            if (clash) throw new BadValue(`two files ${clash.given} have subroutines: open one of them`);
             const profile = by("beside").value;
             if (this.expands) await this.runner.python();
             const other = profile ? await this.runner.ask(this.job(profile)) : null;

@@ -64,14 +64,14 @@ class Core {
     // What is wrong with the lines of programs, a sentence each.
     refusals(programs, machine) {
         const count = this.c.refused(), told = this.said().split("\n").filter(Boolean), more = count - told.length;
-        const advice = new Advice(this.rules, machine, word => {
-            const bytes = encoded(word);
+        const advice = new Advice(this.rules, machine, line => {
+            const bytes = encoded(line);
             this.put(bytes, this.c.room(bytes.length));
-            return !this.rules.not_taken.includes(this.c.tries());
+            return this.c.tries();
         });
         const wrong = told.map(line => {
             const [, file, number, error, code] = /^(\d+):(\d+): ((?:error:(\d+))?.*)/.exec(line), program = programs[file];
-            const text = code ? advice.explain(Number(code), error, program.lines[number - 1]) : `${error}: a height map simulates one`;
+            const text = code ? advice.explain(Number(code), error, program.lines[number - 1]) : advice.noProbe(error, program.lines[number - 1]);
             return `${program.at(Number(number))}: ${text}`;
         });
         return more > 0 ? [...wrong, `and ${more} more lines`] : wrong;
@@ -131,7 +131,7 @@ class Core {
     }
 
     // The spindle was not at its speed in time.
-    slow({ spindle: [wait, input] }) { return this.rules.slow.replace("{input}", input).replace("{seconds}", short(wait)); }
+    slow({ spindle: [wait, input] }) { return this.rules.slow.replace("{input}", input).replace("{seconds}", wait); }
 
     // Executes lines of the console on a core after reset. Returns what it said, and a motion or null.
     async type(lines, hz) {
