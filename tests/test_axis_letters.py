@@ -122,7 +122,7 @@ def test_the_results_name_the_axes(tmp_path: Path, capsys: pytest.CaptureFixture
     assert "C 0 to 90" in said and "Z 0 to 1" in said and "A " not in said
     part.write_text("G1 A5 F1000\n")
     assert main(command) != 0
-    assert "A5: the machine has the axes X Y Z C" in capsys.readouterr().err
+    assert "A5 (NIST): the machine has the axes X Y Z C" in capsys.readouterr().err
 
 
 def test_parameters_are_in_the_order_of_linuxcnc(tmp_path: Path) -> None:

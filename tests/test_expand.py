@@ -254,7 +254,7 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["expand", str(part), "-o", str(out)]) == 0
     assert capsys.readouterr().out == f"part.ngc: 1 plain lines: {out}\n" and out.read_text() == "G0 A2\n"
     assert main(["expand", str(part), "--machine", str(MACHINE)]) == 2
-    assert "A2: the machine has the axes X Y Z" in capsys.readouterr().err
+    assert "A2 (NIST): the machine has the axes X Y Z" in capsys.readouterr().err
     assert main(["expand", str(tmp_path / "none.ngc")]) == 2
 
 

@@ -158,16 +158,15 @@ def test_what_it_says(browser: Browser) -> None:
     text = "(print,one)\no1 repeat [2]\nG91 G1 Z-1 F9\no1 endrepeat\n\nG0 A[2]"
     assert verdict_of(browser, text).startswith("error: line 6: error:20: ")
     said, wrong = browser.value(ANSWER).splitlines()
-    assert said == "one" and wrong.endswith(": A2: the machine has the axes X Y Z")
+    assert said == "one" and wrong.endswith(": A2 (NIST): the machine has the axes X Y Z")
     assert browser.value("passo") is None
 
 
 def test_places_of_plain_lines(browser: Browser) -> None:
     text = "o1 repeat [2]\nG91 G38.2 Z-1 F9\no1 endrepeat\nG0 X0"
     assert verdict_of(browser, text).startswith("error: line 2: no probe is fitted")
-    assert (
-        browser.value(ANSWER).splitlines() == ["line 2: no probe is fitted: a height map simulates one"] * 2
-    )
+    said = "line 2: no probe is fitted: G38.2 (grbl, LinuxCNC): a height map simulates one"
+    assert browser.value(ANSWER).splitlines() == [said] * 2
 
 
 def test_tools(browser: Browser, page: Path) -> None:

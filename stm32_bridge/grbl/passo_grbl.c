@@ -177,12 +177,12 @@ static void heed(struct passo_grbl *grbl, enum passo_player_event event, enum pa
 	case PASSO_PLAYER_NO_PROBE:
 		passo_grbl_fail(grbl, PASSO_GRBL_PROBE_MISSED, PASSO_GCODE_OK);
 		return;
-	case PASSO_PLAYER_SLOW:
 #ifndef PASSO_PLAIN_GCODE
+	case PASSO_PLAYER_SLOW:
 		passo_gcode_stop_spindle(grbl->player->gcode);
 		passo_grbl_fail(grbl, PASSO_GRBL_SPINDLE_SLOW, PASSO_GCODE_LOCKED);
-#endif
 		return;
+#endif
 	case PASSO_PLAYER_OFFSETS:
 		grbl->keeps = true;
 		break;
@@ -202,8 +202,7 @@ static void heed(struct passo_grbl *grbl, enum passo_player_event event, enum pa
 		passo_grbl_report_input(grbl);
 #endif
 		break;
-	case PASSO_PLAYER_NOTHING:
-	case PASSO_PLAYER_PAUSED:
+	default: /* nothing, a pause */
 		break;
 	}
 	if (error != PASSO_OK)
