@@ -49,8 +49,8 @@ struct passo_rig_wheel {
 	uint32_t per_turn; /* counts from index to index; of other encoders 0: without an index */
 	uint64_t
 	    start_up; /* clocks from rest to that speed; not 0: output 0 turns it on, output 1 reverses it */
-	/* The same, 1 and up: the motor whose home input says that the spindle is at its speed; 0: none. Without
-	 * `per_turn` it has no encoder. */
+	/* The same, 1 and up: the motor whose home input says that the spindle is at its speed; 0: none.
+	 * Without `per_turn` it has no encoder. */
 	uint8_t ready;
 	bool inverted; /* that input is active low */
 };

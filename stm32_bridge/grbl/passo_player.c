@@ -12,7 +12,7 @@
 #define ACTIONS_MICROSECONDS 200u
 #define MICROSECONDS_PER_SECOND 1000000u
 #define SETTLES_MICROSECONDS 50000u /* until the input of a spindle that is to change its speed counts */
-#define LEVELS_AT 16u /* in the output word */
+#define LEVELS_AT 16u               /* in the output word */
 
 void passo_player_open(struct passo_player *player, struct passo_gcode *gcode, struct passo_path_feed *feed,
     const struct passo_player_machine *machine)

@@ -23,7 +23,7 @@ struct passo_program_settings {
 	struct passo_path_settings path;
 	struct passo_gcode_settings gcode;
 	const uint16_t
-	    *inputs; /* of a simulation, see struct passo_player_machine; NULL: those of the core */
+	    *inputs;      /* of a simulation, see struct passo_player_machine; NULL: those of the core */
 	uint32_t spin_up; /* see there; so is the next one */
 	uint8_t at_speed;
 };

@@ -8,7 +8,7 @@
 #define AXES_USED (AXES > 0 ? AXES : GRBL_AXES_MAX)
 #define AXES_NEEDED ((MOTORS > 0 ? MOTORS : AXES > 0 ? AXES : 1) + (TURN_COUNTS > 0))
 #define UM_PER_MM 1000
-#define SPIN_UP 10 /* s, where an input says when it is over */
+#define SPIN_UP 10     /* s, where an input says when it is over */
 #define LINEAR_AXES 2u /* X and Y; Z and what follows are slow */
 
 static const uint16_t VALUES[PASSO_GRBL_SETTINGS] = {
