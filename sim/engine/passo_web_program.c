@@ -36,8 +36,7 @@ struct web_machine {
 	double core_axes; /* a frame holds more lines for a core with fewer, which the ramps depend on */
 	double step_high, step_low, dir_setup, dir_hold; /* clocks */
 	double spindle_maximum, left_out, inputs, power;
-	double turn_counts, interval, wander, start_up; /* of a spindle that is simulated, as of its rig;
-	                                                   without an encoder it has no counts; or 0 */
+	double turn_counts, interval, wander, start_up; /* of a simulated spindle, as of its rig; or 0 */
 	double spin_up, at_speed; /* us that motions wait for it; the input of M66 that it says so by, or 0 */
 	double motors;            /* 0: one for each axis, and no map */
 	double plus[PASSO_AXES_MAX], minus[PASSO_AXES_MAX];
@@ -337,8 +336,7 @@ EXPORT("begin") int32_t web_begin(void)
 	return FAILED;
 }
 
-/* Plays a number of turns of the main loop. SLOW: the spindle was not at its speed in time; other failures
- * are written. */
+/* Plays a number of turns of the main loop. SLOW: the spindle was not at its speed in time. */
 EXPORT("go") int32_t web_go(uint32_t turns)
 {
 	const struct web_machine *machine = &web.machine;

@@ -34,19 +34,16 @@ enum passo_player_event {
 	PASSO_PLAYER_NO_PROBE,  /* no probe is fitted */
 	PASSO_PLAYER_UNTOUCHED, /* the probe did not trigger */
 	PASSO_PLAYER_UNEXPECTED, /* it had already triggered */
-	PASSO_PLAYER_SLOW /* no input has said that the spindle is at its speed; the rest of the line is
-	                     dropped */
+	PASSO_PLAYER_SLOW /* the spindle is not at its speed in time; the rest of the line is dropped */
 };
 
 /* Machine description; must outlive the player. */
 struct passo_player_machine {
 	const struct passo_path_axis *axis; /* as passed to passo_path_open() */
 	bool limited;                       /* targets must be within low .. high, machine coordinates */
-	uint8_t
-	    at_speed; /* input of M66 that says that the spindle is at its speed; 0: the time alone says so */
+	uint8_t at_speed; /* input of M66 that says that the spindle is at its speed; 0: none */
 	passo_gcode_position low, high;
-	uint32_t
-	    spin_up; /* us that a motion waits for the spindle, or at most waits for its input; 0: none */
+	uint32_t spin_up; /* us that a motion waits for the spindle, at most if it has an input; 0: none */
 	const uint16_t *inputs; /* levels that M66 reads, P0 is bit 0; NULL: those of the core */
 #ifndef PASSO_WITHOUT_THREADS
 	uint8_t
