@@ -147,7 +147,7 @@ static const char *const LINES_OF[] = {"G0 X1 Y2", "G1 X-1 F600", "G1 Y3 Z1 F900
     "$32=1", "$13=1", "$11=0.02", "$130=10", "$P", "$", "$999=1", "$0=-1", "", "(a comment)", "; another",
     "G1", "X1 X2", "G99", "N5 G1 X1 F100", "%", "/G0 X1", "G20", "G21", "G53 G0 X0", "G93 G1 X1 F60", "T1 M6",
     "T2 M6", "M6", "M61 Q1", "G43 H1", "G43.2 H2", "G49", "G10 L1 P1 Z2", "$TPW", "$TLR", "$342=1",
-    "$394=0.02"};
+    "$394=0.02", "$394=0.1", "M4"};
 static const char REAL_TIME[] = {'?', '?', '?', '!', '~', '~', '~', '\x84', '\x85', '\x90', '\x91', '\x92',
     '\x93', '\x94', '\x95', '\x96', '\x97', '\x99', '\x9A', '\x9E', '\x9D', '\xA3', '\xA3'};
 
@@ -214,6 +214,7 @@ static void turn_on(void)
 	const struct passo_grbl_setup fitted = {.limits_low = 7,
 	    .homes = 7,
 	    .homed = (uint8_t)(below(3) ? 0 : 7),
+	    .at_speed = (uint8_t)(below(3) ? 0 : 1 + below(3)),
 	    .probe = below(3) != 0,
 	    .pages = below(3) ? &PAGES : NULL};
 
