@@ -159,7 +159,7 @@ def test_the_input_of_the_former_speed_does_not_count(tmp_path: Path) -> None:
 
 
 def test_the_alarm(tmp_path: Path) -> None:
-    """14, as in grblHAL; what waits is refused, the spindle is off, and `$X` goes on without it."""
+    """14, as in grblHAL; what waits is refused, the spindle is off, and `$X` continues without it."""
     with console(tmp_path, WAITS) as session:
         session.send(b"M3 S500\nG1 X1 F6000\n", 3)
         assert session.log.count("ALARM:14\r\n") == 1 and session.answers == ["error:9"] * 2
