@@ -125,11 +125,11 @@ def explain(error: GcodeError, words: Sequence[Word], settings: GcodeSettings) -
             norm, advice = _advice(word)
             return f"{error}: {word} ({norm}): {advice}"
     patterns, advice = SAID.get(number, ("", "see docs/gcode.md"))
-    word = _culprit(number, patterns.split("|"), words, settings)
-    if number == UNUSED and word and word.letter in LETTERS:
-        return f"{error}: {word} ({LETTERS[word.letter]})"
-    named = f"{word} ({norm_of(word)})" if word else f"the line ({NIST})"
-    needed = NEEDED.get(str(word), "what it needs")
+    about = _culprit(number, patterns.split("|"), words, settings)
+    if number == UNUSED and about and about.letter in LETTERS:
+        return f"{error}: {about} ({LETTERS[about.letter]})"
+    named = f"{about} ({norm_of(about)})" if about else f"the line ({NIST})"
+    needed = NEEDED.get(str(about), "what it needs")
     return f"{error}: {named}: {advice.format(needed) if number != NO_PORT else _ports(settings)}"
 
 
