@@ -74,8 +74,8 @@ module passo_tracker #(
   //   3  speed - w             7                         11  new v, of v, w, v - a   15
   //
   // y is d * sign, less 1 if sign is negative, so that its sign bit, as one of d, is right after additions, too.
-  // A slot reads its words; one clock later they are what is added, two clocks later the sum is written: it can be
-  // read three slots later.
+  // A slot reads its words; one clock later they are what is added, two clocks later, so one line, the sum is written:
+  // it can be read three slots later.
 
   reg  [          4:0] slot;
   reg  [AXIS_BITS-1:0] axis;
@@ -84,11 +84,7 @@ module passo_tracker #(
   wire                 word = slot[0];  // the upper one of the pair
   wire                 turn_ends = slot == 5'd31;
   wire                 tick_ends = turn_ends && axis == {AXIS_BITS{1'b1}};
-
-  reg  [          4:0] slot_q;
-  reg  [          4:0] slot_qq;  // of the sum
-  wire [          3:0] line_qq = slot_qq[4:1];
-  wire                 word_qq = slot_qq[0];
+  reg  [AXIS_BITS-1:0] written;  // the axis whose sums are written: until two slots after its turn
 
   // ---- settings of the axis whose turn it is, and what has been found ----
   reg negative;  // sign
@@ -120,8 +116,6 @@ module passo_tracker #(
   wire [3:0] new_velocity = {VELOCITY[3:1], ~odd};
   reg  [3:0] first;
   reg  [3:0] second;
-  reg  [3:0] result;
-  reg        writes;
   reg        subtracts;
   reg        is_zero;  // write 0
   reg        is_first;  // the lowest word
@@ -131,8 +125,6 @@ module passo_tracker #(
   always @* begin
     first     = {SCRATCH[3:1], line[0]};
     second    = 4'bx;
-    result    = {SCRATCH[3:1], line[0]};
-    writes    = 1'b1;
     subtracts = ~negative;
     is_zero   = 1'b0;
     is_first  = ~word & ~line[0];
@@ -142,28 +134,22 @@ module passo_tracker #(
       4'd0: begin
         first     = old_velocity;
         second    = ACCELERATION;
-        result    = FASTER;
         subtracts = 1'b0;
       end
       4'd1: begin
         first     = old_velocity;
         second    = ACCELERATION;
-        result    = SLOWER;
         subtracts = 1'b1;
         is_first  = ~word;
       end
       4'd2: begin
         first     = SPEED;
         second    = old_velocity;
-        result    = 4'bx;
-        writes    = 1'b0;
         subtracts = 1'b1;
       end
       4'd3: begin
         first     = SPEED;
         second    = FASTER;
-        result    = 4'bx;
-        writes    = 1'b0;
         subtracts = 1'b1;
         is_first  = ~word;
       end
@@ -176,19 +162,14 @@ module passo_tracker #(
       4'd6, 4'd7: second = {STOPPING[3:1], line[0]};
       4'd8, 4'd9: begin
         second    = FASTER;
-        result    = 4'bx;
-        writes    = 1'b0;
         no_second = line[0];
       end
       4'd10: begin
         first  = 4'bx;
         second = {POSITION[3:1], 1'b1};
-        result = 4'bx;
-        writes = 1'b0;
       end
       4'd11: begin
         first     = speeds ? FASTER : keeps ? old_velocity : SLOWER;
-        result    = new_velocity;
         subtracts = 1'b0;
         is_first  = ~word;
         is_zero   = cleared;
@@ -197,7 +178,6 @@ module passo_tracker #(
       4'd12, 4'd13: begin
         first     = {STOPPING[3:1], line[0]};
         second    = speeds ? FASTER : old_velocity;
-        result    = {STOPPING[3:1], line[0]};
         subtracts = ~speeds;
         is_zero   = cleared;
         no_second = line[0] | keeps;
@@ -205,7 +185,6 @@ module passo_tracker #(
       default: begin
         first     = lands ? TARGET : {POSITION[3:1], line[0]};
         second    = new_velocity;
-        result    = {POSITION[3:1], line[0]};
         subtracts = negative;
         is_zero   = cleared_position;
         no_first  = lands & ~line[0];
@@ -214,28 +193,46 @@ module passo_tracker #(
     endcase
   end
 
+  // of the sum of one line before
+  reg [3:0] result;
+  reg       writes;
+
+  always @* begin
+    result = {SCRATCH[3:1], ~line[0]};
+    writes = 1'b1;
+    case (line)
+      4'd1: result = FASTER;
+      4'd2: result = SLOWER;
+      4'd3: result = TARGET;
+      4'd9: result = SPEED;
+      4'd10: result = ACCELERATION;
+      4'd12: result = new_velocity;
+      4'd13, 4'd14: result = {STOPPING[3:1], ~line[0]};
+      4'd15, 4'd0: result = {POSITION[3:1], ~line[0]};
+      4'd4, 4'd11: {result, writes} = 5'bxxxx_0;
+      default: ;
+    endcase
+    if (copies) writes = ~(word ? keeps_setting : writes_lower);
+  end
+
   // ---- settings of the host: target up, target down, speed, acceleration, upper halves at odd places ----
   // The upper half is written and copied first: a copy is whole, unless it begins with the write. They are copied where
-  // sums are not written: the target in slots 5 and 6, speed in 17 and 18, acceleration in 19 and 20.
+  // sums are not written: the target is read in slots 5 and 6, speed in 17 and 18, acceleration in 19 and 20, each word
+  // written one clock later.
   wire [2:0] number = bus_address[2:0];
   reg in_targets;  // decoded one clock ahead of the strobe
   reg in_axis;
   reg writes_upper;
   reg writes_lower;
   reg [4:0] host_place;
-  wire copies = slot == 5'd5 || slot == 5'd6 || (slot[4] && slot[3:0] >= 4'd1 && slot[3:0] <= 4'd4);
+  reg keeps_setting;  // the host has written since the upper half was read
+  wire copies = line == 4'd3 || line == 4'd9 || line == 4'd10;
   wire copies_last = slot[2] | (slot[1] & slot[0]);
-  wire [3:0] setting = slot[4] ? (copies_last ? ACCELERATION : SPEED) : TARGET;
   wire [15:0] setting_word;
-  reg copies_q;
 
   // ---- memory ----
   wire [15:0] first_word;
   wire [15:0] second_word;
-  reg  [ 7:0] result_q;
-  reg  [ 7:0] result_qq;
-  reg         writes_q;
-  reg         writes_qq;
   reg         subtracts_q;
   reg         borrows_q;  // carry into the lowest word
   reg         begins_q;  // lowest word
@@ -246,6 +243,7 @@ module passo_tracker #(
   reg         carry;
   wire [16:0] sum = {1'b0, first_term} + {1'b0, second_term} + {16'd0, carry};
   wire [ 2:0] axis_padded = {{(3 - AXIS_BITS) {1'b0}}, axis};
+  wire [ 7:0] place = {{(3 - AXIS_BITS) {1'b0}}, written, result, word};
   wire        host_reads = line == 4'd10;
 
   passo_memory #(
@@ -268,9 +266,9 @@ module passo_tracker #(
     .DATA_REGISTER(0)
   ) u_first (
     .clk          (clk),
-    .write        (writes_qq),
-    .write_address(result_qq),
-    .write_data   (copies_q ? setting_word : sum[15:0]),
+    .write        (writes & ~rst),
+    .write_address(place),
+    .write_data   (copies ? setting_word : sum[15:0]),
     .read_address ({axis_padded, first, word}),
     .load         (1'b1),
     .read_data    (first_word)
@@ -282,9 +280,9 @@ module passo_tracker #(
     .DATA_REGISTER(0)
   ) u_second (
     .clk          (clk),
-    .write        (writes_qq),
-    .write_address(result_qq),
-    .write_data   (copies_q ? setting_word : sum[15:0]),
+    .write        (writes & ~rst),
+    .write_address(place),
+    .write_data   (copies ? setting_word : sum[15:0]),
     .read_address ({host_reads ? number : axis_padded, second, word}),
     .load         (1'b1),
     .read_data    (second_word)
@@ -293,62 +291,52 @@ module passo_tracker #(
   // ---- what is found in the sums ----
   // Whether the sums since the lowest word are all 0, or in line 4 all `negative`: three bits at a time, put together
   // one clock later.
-  wire           sign = negative & line_qq[3:1] == 3'd2;
+  wire           sign = negative & (line == 4'd5 || line == 4'd6);
   wire    [17:0] differs = {2'd0, sum[15:0] ^ {16{sign}}};
   reg     [ 5:0] same;
-  reg            begins_qq;
-  reg            begins_qqq;
   reg            all_same;
   reg            parity;  // of the number of steps: the position, rounded to the nearest step
   integer        k;
 
   always @(posedge clk) begin
     slot         <= slot + 5'd1;
-    slot_q       <= slot;
-    slot_qq      <= slot_q;
-    result_q     <= {axis_padded, result, word};
-    result_qq    <= copies ? {axis_padded, setting, slot[0]} : result_q;
-    copies_q     <= copies;
-    writes_q     <= writes;
-    writes_qq    <= copies ? ~(slot[0] ? writes_upper : writes_lower) : writes_q;
     subtracts_q  <= subtracts & ~is_zero;
     borrows_q    <= (line == 4'd4 ? ~negative : subtracts) & ~is_zero;
     begins_q     <= is_first;
-    begins_qq    <= begins_q;
-    begins_qqq   <= begins_qq;
     no_first_q   <= no_first | is_zero;
     no_second_q  <= no_second | is_zero;
     first_term   <= first_word & ~{16{no_first_q}};
     second_term  <= (second_word & ~{16{no_second_q}}) ^ {16{subtracts_q}};
     carry        <= begins_q ? borrows_q : sum[16];
     writes_lower <= writes_upper & ~rst;
+    keeps_setting <= writes_lower;
     writes_upper <= bus_write & (in_targets | in_axis) & ~rst;
     if (bus_write)
       host_place <= in_axis ? {bus_address[5:3], 1'b1, number[0]} : {number, 1'b0, bus_address[3]};
     if (turn_ends) axis <= axis + 1'b1;
+    if (slot == 5'd1) written <= axis;
     if (tick_ends) odd <= ~odd;
 
-    // the upper word is the last one
-    if (line_qq == 4'd0) wide <= sum[16];
-    if (line_qq == 4'd2) slow <= sum[16];
-    if (line_qq == 4'd3) slower <= sum[16] & ~wide;
-    if (line_qq == 4'd5) behind <= sum[15] ^ negative;
-    if (line_qq == 4'd7) near <= sum[15] ^ negative;
-    if (line_qq == 4'd9) close <= sum[15] ^ negative;
-    if (line_qq == 4'd4) parity <= second_term[15];
-    if (line_qq == 4'd5 && !word_qq) parity <= parity ^ second_term[0];
-    if (line_qq == 4'd14 && word_qq) parity <= parity ^ sum[15];
+    // in the line after that of the sum; the upper word is the last one
+    if (line == 4'd1) wide <= sum[16];
+    if (line == 4'd3) slow <= sum[16];
+    if (line == 4'd4) slower <= sum[16] & ~wide;
+    if (line == 4'd6) behind <= sum[15] ^ negative;
+    if (line == 4'd8) near <= sum[15] ^ negative;
+    if (line == 4'd10) close <= sum[15] ^ negative;
+    if (line == 4'd5) parity <= second_term[15];
+    if (slot == 5'd12) parity <= parity ^ second_term[0];
+    if (slot == 5'd31) parity <= parity ^ sum[15];
     for (k = 0; k < 6; k = k + 1) same[k] <= differs[k*3+:3] == 3'd0;
-    all_same <= &same & (all_same | begins_qqq);
-    if (slot_qq == 5'd13) there <= all_same & ~cleared_position;
-    if (slot_qq == 5'd25) stays_zero <= all_same;
+    all_same <= &same & (all_same | (slot[0] & ~slot[2]));  // begins in slots 11 and 25
+    if (slot == 5'd15) there <= all_same & ~cleared_position;
+    if (slot == 5'd27) stays_zero <= all_same;
 
     if (rst) begin
       slot      <= 5'd1;  // nothing is over
       axis      <= {AXIS_BITS{1'b0}};
       odd       <= 1'b0;
-      writes_q  <= 1'b0;
-      writes_qq <= 1'b0;
+      written   <= {AXIS_BITS{1'b0}};
     end
   end
 
@@ -395,7 +383,7 @@ module passo_tracker #(
     end
     step_made <= {AXES{1'b0}};
     for (j = 0; j < AXES; j = j + 1) begin
-      if (turn_over && result_qq[7:5] == j[2:0]) begin
+      if (turn_over && written == j[AXIS_BITS-1:0]) begin
         step_made[j] <= (parity ^ sum[0]) & ~(clearing | cleared);
         signs[j]     <= negative ^ (rests & behind & ~brakes);
         turns[j]     <= ~stays_zero;
