@@ -243,7 +243,7 @@ module passo_tracker #(
   reg         carry;
   wire [16:0] sum = {1'b0, first_term} + {1'b0, second_term} + {16'd0, carry};
   wire [ 2:0] axis_padded = {{(3 - AXIS_BITS) {1'b0}}, axis};
-  wire [ 7:0] place = {{(3 - AXIS_BITS) {1'b0}}, written, result, word};
+  wire [ 7:0] place = {{(3 - AXIS_BITS) {1'b0}}, written, result, word ^ copies};  // upper halves are copied first
   wire        host_reads = line == 4'd10;
 
   passo_memory #(
