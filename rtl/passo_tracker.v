@@ -193,7 +193,22 @@ module passo_tracker #(
     endcase
   end
 
-  // of the sum of one line before
+  // ---- settings of the host: target up, target down, speed, acceleration, upper halves at odd places ----
+  // The upper half is written and copied first: a copy is whole, unless it begins with the write. They are copied where
+  // sums are not written: the target is read in slots 5 and 6, speed in 17 and 18, acceleration in 19 and 20, each word
+  // written one clock later.
+  wire [ 2:0] number = bus_address[2:0];
+  reg         in_targets;  // decoded one clock ahead of the strobe
+  reg         in_axis;
+  reg         writes_upper;
+  reg         writes_lower;
+  reg  [ 4:0] host_place;
+  reg         keeps_setting;  // the host has written since the upper half was read
+  wire        copies = line == 4'd3 || line == 4'd9 || line == 4'd10;
+  wire        copies_last = slot[2] | (slot[1] & slot[0]);
+  wire [15:0] setting_word;
+
+  // ---- address of the sum: of one line before ----
   reg [3:0] result;
   reg       writes;
 
@@ -201,50 +216,37 @@ module passo_tracker #(
     result = {SCRATCH[3:1], ~line[0]};
     writes = 1'b1;
     case (line)
-      4'd1: result = FASTER;
-      4'd2: result = SLOWER;
-      4'd3: result = TARGET;
-      4'd9: result = SPEED;
-      4'd10: result = ACCELERATION;
-      4'd12: result = new_velocity;
+      4'd1:         result = FASTER;
+      4'd2:         result = SLOWER;
+      4'd3:         result = TARGET;
+      4'd9:         result = SPEED;
+      4'd10:        result = ACCELERATION;
+      4'd12:        result = new_velocity;
       4'd13, 4'd14: result = {STOPPING[3:1], ~line[0]};
-      4'd15, 4'd0: result = {POSITION[3:1], ~line[0]};
-      4'd4, 4'd11: {result, writes} = 5'bxxxx_0;
-      default: ;
+      4'd15, 4'd0:  result = {POSITION[3:1], ~line[0]};
+      4'd4, 4'd11:  {result, writes} = 5'bxxxx_0;
+      default:      ;
     endcase
     if (copies) writes = ~(word ? keeps_setting : writes_lower);
   end
 
-  // ---- settings of the host: target up, target down, speed, acceleration, upper halves at odd places ----
-  // The upper half is written and copied first: a copy is whole, unless it begins with the write. They are copied where
-  // sums are not written: the target is read in slots 5 and 6, speed in 17 and 18, acceleration in 19 and 20, each word
-  // written one clock later.
-  wire [2:0] number = bus_address[2:0];
-  reg in_targets;  // decoded one clock ahead of the strobe
-  reg in_axis;
-  reg writes_upper;
-  reg writes_lower;
-  reg [4:0] host_place;
-  reg keeps_setting;  // the host has written since the upper half was read
-  wire copies = line == 4'd3 || line == 4'd9 || line == 4'd10;
-  wire copies_last = slot[2] | (slot[1] & slot[0]);
-  wire [15:0] setting_word;
-
   // ---- memory ----
   wire [15:0] first_word;
   wire [15:0] second_word;
-  reg         subtracts_q;
-  reg         borrows_q;  // carry into the lowest word
-  reg         begins_q;  // lowest word
-  reg         no_first_q;
-  reg         no_second_q;
-  reg  [15:0] first_term;
-  reg  [15:0] second_term;
-  reg         carry;
+  reg subtracts_q;
+  reg borrows_q;  // carry into the lowest word
+  reg begins_q;  // lowest word
+  reg no_first_q;
+  reg no_second_q;
+  reg [15:0] first_term;
+  reg [15:0] second_term;
+  reg carry;
   wire [16:0] sum = {1'b0, first_term} + {1'b0, second_term} + {16'd0, carry};
-  wire [ 2:0] axis_padded = {{(3 - AXIS_BITS) {1'b0}}, axis};
-  wire [ 7:0] place = {{(3 - AXIS_BITS) {1'b0}}, written, result, word ^ copies};  // upper halves are copied first
-  wire        host_reads = line == 4'd10;
+  wire [2:0] axis_padded = {{(3 - AXIS_BITS) {1'b0}}, axis};
+  wire [7:0] place = {
+    {(3 - AXIS_BITS) {1'b0}}, written, result, word ^ copies
+  };  // upper halves are copied first
+  wire host_reads = line == 4'd10;
 
   passo_memory #(
     .WIDTH        (16),
@@ -299,18 +301,18 @@ module passo_tracker #(
   integer        k;
 
   always @(posedge clk) begin
-    slot         <= slot + 5'd1;
-    subtracts_q  <= subtracts & ~is_zero;
-    borrows_q    <= (line == 4'd4 ? ~negative : subtracts) & ~is_zero;
-    begins_q     <= is_first;
-    no_first_q   <= no_first | is_zero;
-    no_second_q  <= no_second | is_zero;
-    first_term   <= first_word & ~{16{no_first_q}};
-    second_term  <= (second_word & ~{16{no_second_q}}) ^ {16{subtracts_q}};
-    carry        <= begins_q ? borrows_q : sum[16];
-    writes_lower <= writes_upper & ~rst;
+    slot          <= slot + 5'd1;
+    subtracts_q   <= subtracts & ~is_zero;
+    borrows_q     <= (line == 4'd4 ? ~negative : subtracts) & ~is_zero;
+    begins_q      <= is_first;
+    no_first_q    <= no_first | is_zero;
+    no_second_q   <= no_second | is_zero;
+    first_term    <= first_word & ~{16{no_first_q}};
+    second_term   <= (second_word & ~{16{no_second_q}}) ^ {16{subtracts_q}};
+    carry         <= begins_q ? borrows_q : sum[16];
+    writes_lower  <= writes_upper & ~rst;
     keeps_setting <= writes_lower;
-    writes_upper <= bus_write & (in_targets | in_axis) & ~rst;
+    writes_upper  <= bus_write & (in_targets | in_axis) & ~rst;
     if (bus_write)
       host_place <= in_axis ? {bus_address[5:3], 1'b1, number[0]} : {number, 1'b0, bus_address[3]};
     if (turn_ends) axis <= axis + 1'b1;
@@ -333,10 +335,10 @@ module passo_tracker #(
     if (slot == 5'd27) stays_zero <= all_same;
 
     if (rst) begin
-      slot      <= 5'd1;  // nothing is over
-      axis      <= {AXIS_BITS{1'b0}};
-      odd       <= 1'b0;
-      written   <= {AXIS_BITS{1'b0}};
+      slot    <= 5'd1;  // nothing is over
+      axis    <= {AXIS_BITS{1'b0}};
+      odd     <= 1'b0;
+      written <= {AXIS_BITS{1'b0}};
     end
   end
 
