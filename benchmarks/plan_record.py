@@ -3,9 +3,9 @@
 
     .venv/bin/python -m benchmarks.plan_record
 
-writes it again and shows what has changed. A change of the planner that should not alter a plan must not alter
-the record; of any other change, it says which paths and moves became faster or slower. It is not a judge: a
-wrong plan can be on record.
+writes it again and shows what has changed. A change of the planner that should not alter a plan must not
+alter the record; of any other change, it says which paths and moves became faster or slower. It is not a
+judge: a wrong plan can be on record.
 """
 
 import json
@@ -38,6 +38,7 @@ LOOK_AHEAD = 48
 MOVES = 240  # random move files
 DIGITS = 12  # of a hash
 SHOWN = 40  # changes
+PACE = (16, 32, 8)  # ramps and lines that a core holds, and lines of a frame
 PROFILES = ("linear", "cosine", "sigmoid", "jerk")
 SMOOTH = PathSettings((PathAxis(jerk=20_000), PathAxis(jerk=20_000), PathAxis(50, 100, 300, jerk=6000)))
 PATHS: dict[str, Callable[[], Sequence[Line]]] = {
@@ -65,9 +66,11 @@ def _hash(words: Sequence[object]) -> str:
     return sha256(repr(words).encode()).hexdigest()[:DIGITS]
 
 
-def of_path(lines: Sequence[Line], settings: PathSettings, look_ahead: int) -> Entry:
-    """A path, fed as fast as it is planned."""
-    made = plan(lines, settings, look_ahead)
+def of_path(
+    lines: Sequence[Line], settings: PathSettings, look_ahead: int, pace: tuple[int, int, int] | None = None
+) -> Entry:
+    """A path, fed as fast as it is planned, or for a feed with these arguments of passo_path_pace()."""
+    made = plan(lines, settings, look_ahead, pace=pace)
     clocks = sum(ramp.ticks for ramp in made.ramps) << made.path.parameters.tick_log2
     words = [(ramp.shape, ramp.mirror, ramp.progress_step, ramp.last) for ramp in made.ramps]
     return Entry(clocks, len(made.ramps), _hash([made.words, words]))
@@ -112,6 +115,11 @@ def entries() -> dict[str, Callable[[], Entry]]:
         for profile in PROFILES:
             settings = replace(SMOOTH, profile=profile)
             add(f"{name}, {profile}", lines, settings, LOOK_AHEAD)
+            for polls in (100, 1000):
+                found[f"{name}, {profile}, {polls} polls"] = partial(
+                    lambda lines, *others: of_path(lines(), *others),
+                    *(lines, replace(settings, polls=polls), LOOK_AHEAD, PACE),
+                )
     for number, path in enumerate(wanderings(12, seed=3)):
         profile, tolerance = PROFILES[number % len(PROFILES)], Fraction(number % 3, 100)
         settings = replace(SMOOTH, profile=profile, tolerance=tolerance)

@@ -315,14 +315,14 @@ def judge(
         judging = Judge(worker, known, mutants, fates, bool(only))
         show(f"C: {judging.again()} kills tried again")
         rounds = [*((limit, False) for limit in limits), (limits[-1], True)]
-        for limit, record in rounds:
+        for limit, on_record in rounds:
             for i, mutant in enumerate(mutants, 1):
                 if fates.get(mutant.name).lives:
-                    judging.play(mutant, limit, record)
+                    judging.play(mutant, limit, on_record)
                 if i % 10 == 0 or i == len(mutants):
                     fates.save()
                     living = sum(fates.get(mutant.name).lives for mutant in mutants)
-                    what = "the record" if record else f"tests of {limit} s"
+                    what = "the record" if on_record else f"tests of {limit} s"
                     show(f"C: {i} of {len(mutants)}, {what}: {living} live")
     finally:
         worker.end()
