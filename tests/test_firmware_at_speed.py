@@ -15,7 +15,7 @@ P2 = 0b10  # of the home inputs
 
 
 def test_the_input() -> None:
-    """Motion continues when it rises; alarm 14 and the spindle off when it does not. Another image refuses."""
+    """Motion continues when it rises; else alarm 14 and the spindle off. Another image refuses."""
     elf = grbl_elf(
         paths.build / "tests" / "firmware_CHIP_cb_GRBL_1_AT_SPEED_2", "AT_SPEED=2", image=LARGE_IMAGE
     )
