@@ -5,6 +5,7 @@ import math
 import random
 import re
 from collections.abc import Callable
+from typing import Any
 
 from passo.gcode import NANOMETERS, GcodeError
 from passo.native import planner
@@ -17,6 +18,7 @@ LINES = 40
 SHIFTS = {"G7", "G8", "G10", "G17", "G18", "G19", "G20", "G21", "G28", "G30", "G43.1", "G49", "G54", "G55",
           "G59", "G61", "G61.1", "G64", "G90", "G91", "G92", "G92.1"}  # fmt: skip
 PLANES = {"G17": "XYZ", "G18": "ZXY", "G19": "YZX"}
+NORMAL = {"G17": {"K"}, "G18": {"J"}, "G19": {"I"}}  # the offset that arcs of a plane do not have
 # enum passo_gcode_group
 MOTION, PLANE, UNITS, DISTANCE, FEED_MODE, PATH, DIAMETER = 0, 2, 3, 4, 5, 6, 12
 
@@ -220,7 +222,18 @@ def known(line: str, passo: Passo) -> bool:
         or ("G53" in words and ("G91" in words or incremental or not letters & set("XYZ")))
         or (others and gcode.mode[MOTION] == 800)
         or (words & SHIFTS and is_cycle(gcode.mode[MOTION]))
+        or (_is_arc(words, gcode) and letters & NORMAL[_plane(words, gcode)])
     )
+
+
+def _is_arc(words: set[str], gcode: Any) -> bool:
+    """Whether a line makes one, or one may be in force."""
+    return bool(words & {"G2", "G3", "G02", "G03"}) or gcode.mode[MOTION] in (20, 30)
+
+
+def _plane(words: set[str], gcode: Any) -> str:
+    """That of a line."""
+    return next(iter(words & NORMAL.keys()), f"G{gcode.mode[PLANE] // 10}")
 
 
 def is_slow(passo: Passo) -> bool:
