@@ -35,6 +35,7 @@ TESTS = (
     *("test_driver_sessions", "test_driver_noise", "test_driver_square", "test_driver_frames"),
     *("test_driver_waits", "test_driver_pass", "test_endings", "test_follow", "test_gcode_lathe"),
     *("test_driver_promises", "test_path_parts_rare", "test_path_promises"),
+    *("test_driver_trackers",),
 )
 LONG = Path(__file__).with_name("c_long.py")
 MOST_FAIL = 2  # tests of a file that do not run on copies
