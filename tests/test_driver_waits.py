@@ -262,7 +262,7 @@ def test_no_change_of_a_speed_is_steep(after: int, rpm: int) -> None:
 
 
 def test_a_stop_that_comes_with_the_first_step_is_not_steep() -> None:
-    """At its sync edge the shaft begins with a jump, which was not there yet: the ramp down is long enough."""
+    """At its sync edge the shaft begins with a jump, which was not there yet: the ramp is long enough."""
     wire, acceleration, minimum = Trace(), 10_000_000, 8000
     driver = open_driver(wire)
     driver.call("configure_motion", 50 * MS, 50 * MS, 0)
