@@ -101,12 +101,14 @@ struct passo_gcode_vector passo_gcode_rotate(struct passo_gcode_vector vector, s
  * from the ratio of the components, is within 1/80 of a turn. */
 uint64_t passo_gcode_angle(struct passo_gcode_vector vector)
 {
-	const uint64_t either = passo_size64(vector.x) | passo_size64(vector.y);
+	uint64_t either = passo_size64(vector.x) | passo_size64(vector.y);
 
 	if (either == 0)
 		return 0;
-	const int64_t scale = INT64_C(1) << (62 - passo_bits((struct passo_u128){0, either}));
-	vector = (struct passo_gcode_vector){vector.x * scale, vector.y * scale};
+	for (; either < PASSO_GCODE_UNIT / 2; either *= 2) {
+		vector.x *= 2;
+		vector.y *= 2;
+	}
 	const uint64_t x = passo_size64(vector.x), y = passo_size64(vector.y),
 		       length = passo_gcode_length(vector);
 	const uint64_t eighth = x == y ? EIGHTH : passo_mul_div(EIGHTH, x < y ? x : y, x < y ? y : x);
