@@ -77,3 +77,17 @@ def test_no_pointer_is_an_error(with_all: Driver, call: tuple[Any, ...]) -> None
     """Not a crash, and nothing is sent."""
     frames = with_all.engine.frames
     assert error_of(with_all, *call) == "ARGUMENT" and with_all.engine.frames == frames
+
+
+def test_a_motion_whose_inputs_stay_unknown_is_given_up() -> None:
+    """After 0.1 s, if they change within the filter all the time: it was not begun."""
+    engine, told, between = Wire(Parameters(inputs=1), 8_000_000), [], 60_000
+    driver = open_driver(engine)
+    driver.call("configure_filter", 65_535)
+    driver.call("move_by_speed", by_speed([100, 0, 0, 0]))
+    for change in range(16):
+        engine.engine.set("home", change % 2)
+        engine.run(between)
+        told += [error for error in [error_of(driver, "poll")] if error != "OK"]
+        assert not told or change * between > engine.clock_hz // 10
+    assert told == ["INPUTS_UNKNOWN"] and engine.counted()[0] == [0, 0, 0, 0]
