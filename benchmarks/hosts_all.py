@@ -91,6 +91,9 @@ def threads(options: Options) -> Iterator[Row]:
     figure = f"each place within a step after at most {found.late:.1f} periods"
     kept = found.late <= found.lag + servo.LATE
     yield Row(clocks, figure, f"lag {found.lag} + {servo.LATE}", kept)
+    figure = f"{found.lags[0]:.1f} to {found.lags[1]:.1f} periods"
+    bound = f"{found.lag} ± {servo.CONSTANT:g}"
+    yield Row("lag there, at half the speed or more", figure, bound, servo.is_constant(found))
     most = servo.ACCELERATION * servo.ROUNDING
     yield Row("acceleration there", f"{found.hardest:.0f} mm/s²", f"{most:.0f}", found.hardest <= most)
     figure = f"{found.trim_step:.1f} ppm"
@@ -167,7 +170,6 @@ PARTS: dict[str, tuple[str, Callable[[Options], Iterable[Row]]]] = {
     "arcs": ("LinuxCNC: homing and arcs", program("arcs")),
     "g33": ("LinuxCNC: threads", program("g33")),
     "lines": ("LinuxCNC: many lines", program("lines")),
-    "both": ("LinuxCNC: some lines", program("both")),
     "python": ("Python", first_program),
     "wrong": ("What is wrong", wrong_input),
 }

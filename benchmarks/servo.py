@@ -37,6 +37,8 @@ PINS = {"step_high_ns": 1000, "step_low_ns": 1000, "dir_setup_ns": 500, "dir_hol
 UNIT = float(1 << 32)
 MICROSECOND = 1e-6
 PPM, ERRORS, GAP = 200, 1e-4, (0.002, 0.05)
+LAGS = 6  # periods about the lag in which a place is sought
+CONSTANT = 1.0  # periods that it differs from what is stated
 LATE = 3  # periods beyond the lag: the queue is read once in a period, and the core begins within another
 ROUNDING = 1.01  # of what is computed from steps
 ROUNDING_PPM = 125.0  # a substep of a line
@@ -197,6 +199,23 @@ class Run:
     def passes(self) -> np.ndarray:
         """Periods after its command at which all axes are within a step of its place together; NaN: never."""
         return passes(self.pins, self.commands, self.begun, self.period)
+
+    @property
+    def lags(self) -> np.ndarray:
+        """Periods after its command at which an axis with half its speed or more passes the place."""
+        found, wanted = [], self.places * self.setting.scale
+        for axis in range(self.setting.axes):
+            moves = moves_of(self.pins, axis)
+            clocks = self.pins["clock"][moves != 0].astype(float)
+            steps = np.cumsum(moves[moves != 0])
+            change = np.gradient(wanted[:, axis]) / self.setting.period
+            for call in np.flatnonzero(np.abs(change) > self.setting.speed * self.setting.scale / 2):
+                about = self.begun + (call + self.lag) * self.period
+                near = slice(*np.searchsorted(clocks, [about - LAGS * self.period, about + LAGS * self.period]))
+                way = np.sign(change[call])
+                clock = np.interp(way * wanted[call, axis], way * steps[near], clocks[near])
+                found.append((clock - self.begun) / self.period - call)
+        return np.array(found)
 
     @property
     def moved(self) -> np.ndarray:
@@ -472,6 +491,7 @@ class Figures:
 
     lag: int  # periods
     late: float  # periods by which a place is passed after its command, at most
+    lags: tuple[float, float]  # at half the speed or more: least and most
     lost: int  # steps
     hardest: float  # mm/s^2, in step
     trim_step: float  # ppm by which a line differs from the one before, at most, by the loop
@@ -502,11 +522,13 @@ def measure(seed: int, seconds: float = 20, count: int = 100, deaths: int = 20, 
         end = run(setting, seconds, command, rng.choice((-PPM, PPM)), wakes, die=rng.randrange(200, 3000))
         ends.append((end.cause, end.hardest, lost(end)))
     passed = [found.passes()[found.moved] for found in steady]
+    lags = np.concatenate([found.lags for found in steady])
     instructions, words = cost()
     causes = [cause for cause, _, _ in ends]
     return Figures(
         steady[0].lag,
         max(np.inf if np.isnan(one).any() else float(one.max()) for one in passed),
+        (float(lags.min()), float(lags.max())),
         max(*(lost(found) for found in (*steady, late)), *(steps for _, _, steps in ends)),
         max(found.hardest for found in steady),
         max(float(np.abs(np.diff(found.trims)).max()) for found in steady) / 1000,
@@ -542,12 +564,17 @@ def following(found: Run) -> float:
     )
 
 
+def is_constant(found: Figures) -> bool:
+    """The lag is the stated one."""
+    return max(abs(lag - found.lag) for lag in found.lags) <= CONSTANT
+
+
 def good(found: Figures) -> bool:
     """All promises are kept."""
     exact = found.lost == found.long.lost == 0 and not found.gaps_off and found.long.off <= OFF_MAX
     soft = found.hardest <= ACCELERATION * ROUNDING
     soft = soft and max(found.gaps_hardest, found.deaths_hardest) <= HARDEST * ROUNDING
-    in_step = found.late <= found.lag + LATE and found.trim_step < ROUNDING_PPM
+    in_step = found.late <= found.lag + LATE and found.trim_step < ROUNDING_PPM and is_constant(found)
     return exact and soft and in_step and set(found.causes) == {Cause.WATCHDOG.name}
 
 
@@ -557,6 +584,7 @@ def main() -> int:
     for line in (
         f"clocks {PPM} ppm apart, wakes late by up to 1 ms, bit errors of {ERRORS:g} ({found.flips} bits):",
         f"    every place within a step at most {found.late:.1f} periods after its command; lag {found.lag}",
+        f"    lag at half the speed or more {found.lags[0]:.1f} to {found.lags[1]:.1f} periods",
         f"    steps lost: {found.lost}; acceleration {found.hardest:.0f} of {ACCELERATION:g} mm/s^2",
         f"    the loop changes a line by at most {found.trim_step:.1f} ppm; rounding: {ROUNDING_PPM:g} ppm",
         f"gaps of {GAP[0]:g} to {GAP[1]:g} s slow {found.gaps_slowed} times: {found.gaps_hardest:.0f} mm/s^2",

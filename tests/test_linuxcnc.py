@@ -224,7 +224,8 @@ def test_make_for_a_board(tmp_path: Path) -> None:
     (tmp_path / "router.toml").write_text('host = "linuxcnc"\n' + router)
     assert main(["make", str(tmp_path / "router.toml"), "--out", str(tmp_path / "out"), "--no-build"]) == 0
     names = {path.name for path in (tmp_path / "out").iterdir()}
-    assert names == {"machine.ini", "machine.hal", "tool.tbl", "wiring.txt", "summary.txt"}
+    drawn = {f"wiring.{kind}" for kind in ("txt", "svg", "html")}
+    assert names == {"machine.ini", "machine.hal", "tool.tbl", "summary.txt"} | drawn
     wires = (tmp_path / "out" / "wiring.txt").read_text()
     assert re.search(r"^spi_sclk .* Raspberry Pi 23$", wires, re.M) and "Blue Pill" not in wires
     shared = 'host = "linuxcnc"\nclock_hz = 8_000_000\nkinematics = "corexy"\n'
