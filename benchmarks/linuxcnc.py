@@ -63,6 +63,7 @@ THREADS = """
 G21 G90 G18
 G0 X5 Z15
 M3 S300
+M8
 G33 Z8 K1
 G0 X6
 G0 Z16
@@ -163,8 +164,7 @@ class Program:
     engine: str = "both"  # model and Verilated core, compared on each edge
 
 
-# Without homing, near the place where it is, for a second of motion on the Verilated core
-BOTH = 200  # lines
+# Without homing, near the place where it is, for less time on the Verilated core
 HOME_WHERE_IT_IS = {
     **{f"HOME_{key} = {value}\n": "" for key, value in {"SEARCH_VEL": -50, "LATCH_VEL": -2}.items()},
     **{"HOME_SEARCH_VEL = 20\n": "", "HOME_LATCH_VEL = 2\n": ""},
@@ -175,12 +175,12 @@ HOME_WHERE_IT_IS = {
 
 def programs(lines: int = 20_000) -> dict[str, Program]:
     """By the name of a part of `make hosts`."""
-    few = short_lines(BOTH, place=10, size=0.2)
+    shorter = short_lines(lines, place=10, size=0.2)
     return {
         "arcs": Program("homing on switches, circle and arcs at 6,000 mm/min", ARCS, [50, 50, 73]),
         "g33": Program("three passes of G33", THREADS, [8, 2], [200, 200], machine=LATHE),
-        "lines": Program(f"{lines:,} short lines", short_lines(lines), [100, 60, 74]),
-        "both": Program(f"{BOTH} short lines", few, [18, 10, 1], changes=HOME_WHERE_IT_IS),
+        "lines": Program(f"{lines:,} lines of 0.25 mm", short_lines(lines), [100, 60, 74], engine="model"),
+        "both": Program(f"{lines:,} lines of 0.05 mm", shorter, [18, 10, 1], changes=HOME_WHERE_IT_IS),
     }
 
 
