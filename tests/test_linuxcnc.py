@@ -189,6 +189,23 @@ def test_settings_that_are_wrong() -> None:
     assert not any(moves_of(events, axis).any() for axis in range(3))
 
 
+def test_a_thread_that_stops() -> None:
+    """The core stops the axis and switches its drive off; `has-bit` says so until it is cleared."""
+    pause = "loadusr -w sleep 1\n"
+    script = SCRIPT.replace("AXES", "1 watchdog_ms=2000").replace("maxaccel 4000", "maxaccel 2000")
+    script += f"{STEPGEN}enable 1\n{pause}{STEPGEN}position-cmd 300\n{pause}stop\nloadusr -w sleep 8\n"
+    look = "getp passo.0.watchdog.has-bit\ngetp passo.0.fault\n"
+    script += f"start\n{pause}{look}{STEPGEN}enable 0\n{pause}{STEPGEN}enable 1\n{pause}getp passo.0.state\n"
+    script += f"{STEPGEN}enable 0\nsetp passo.0.watchdog.has-bit 0\n{pause}{STEPGEN}enable 1\n{pause}"
+    script += f"{look}getp passo.0.state\n"
+    said, events = run_hal(script, real_time=True)
+    assert said.count("passo: motion: WATCHDOG: ") == 1, said
+    idle, running = "0", "3"
+    assert re.findall(r"^(TRUE|FALSE|\d)$", said, re.M) == ["TRUE", "TRUE", idle, "FALSE", "FALSE", running]
+    on = np.flatnonzero(np.diff(events["enable"] & np.uint64(1), prepend=np.uint64(0)) == 1)
+    assert len(on) == 2 and moves_of(events[on[0] : on[1]], 0).any()
+
+
 @pytest.mark.parametrize(
     ("axes", "device", "sentence"),
     [
