@@ -176,7 +176,7 @@ PARTS: dict[str, tuple[str, Callable[[Options], Iterable[Row]]]] = {
     "arcs": ("LinuxCNC: homing and arcs", program("arcs")),
     "g33": ("LinuxCNC: threads", program("g33")),
     "lines": ("LinuxCNC: many lines", program("lines")),
-    "both": ("LinuxCNC: many lines on the Verilated core", program("both")),
+    "both": ("LinuxCNC: shorter lines", program("both")),
     "python": ("Python", first_program),
     "wrong": ("What is wrong", wrong_input),
 }
