@@ -89,9 +89,6 @@ def test_threads() -> None:
     assert found.positions == pytest.approx([8, 2], abs=1e-9)
     assert is_in_step(found, [200, 200])
     assert fits(threads(found)), threads(found)
-    for output, pin in (("power", 0), ("outputs", 0), ("outputs", 2)):  # speed, spindle, flood
-        levels = found.events[output] >> np.uint64(pin) & np.uint64(1)
-        assert levels.any() and not levels[-1]
 
 
 def test_short_lines_on_the_verilated_core() -> None:
