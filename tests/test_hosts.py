@@ -26,10 +26,10 @@ def test_promises() -> None:
 
 def test_minutes_of_a_servo_thread() -> None:
     """Steps are counted as they come; the loop finds the difference of the clocks."""
-    found = servo.long(0.1)
+    found = servo.long(0.25)
     assert found.lost == 0 and found.off <= servo.OFF_MAX
     assert abs(found.trim + servo.PPM) < 60
-    assert abs(servo.long(0.1, -servo.PPM).trim - servo.PPM) < 60
+    assert abs(servo.long(0.25, -servo.PPM).trim - servo.PPM) < 60
 
 
 @pytest.fixture

@@ -5,6 +5,7 @@ import re
 import subprocess
 from pathlib import Path
 
+import numpy as np
 import pytest
 from passo.cli import main
 from passo.engine import moves_of
@@ -13,9 +14,28 @@ from passo.linuxcnc_files import linuxcnc_files
 from passo.machine_file import read_machine
 from passo.toolchain import paths
 
-from benchmarks.linuxcnc import ARCS, LATHE, THREADS, fits, is_in_step, threads
-from benchmarks.servo import SHARE_MAX
-from tests.helpers.linuxcnc import COMPONENT, EXAMPLE, component, run_hal, run_linuxcnc, share_of_wire
+from benchmarks.linuxcnc import (
+    ARCS,
+    HOME_WHERE_IT_IS,
+    LATHE,
+    THREADS,
+    figure,
+    fits,
+    is_in_step,
+    measure,
+    programs,
+    threads,
+)
+from benchmarks.servo import LATE, SHARE_MAX
+from tests.helpers.linuxcnc import (
+    COMPONENT,
+    EXAMPLE,
+    component,
+    number_of,
+    run_hal,
+    run_linuxcnc,
+    share_of_wire,
+)
 
 END = [50.0, 50.0, 73.0]
 SCALES = [80.0, 80.0, 400.0]
@@ -43,6 +63,22 @@ def test_homing_and_arcs() -> None:
         assert found.ferror[joint] <= FASTEST * PERIOD * (lag + 3) + 1 / SCALES[joint]
 
 
+def test_a_short_period() -> None:
+    """4 kHz, a faster wire and axes that bear 40,000 mm/s^2: a lag of 14 periods, 3.5 ms."""
+    changes = HOME_WHERE_IT_IS | {
+        "SERVO_PERIOD = 1000000\n": "SERVO_PERIOD = 250000\n",
+        "axes=[KINS]JOINTS": "axes=[KINS]JOINTS buffer=1 speed_hz=12000000",
+        "STOPACCEL = 2000\n": "STOPACCEL = 40000\n",
+        "STOPACCEL = 800\n": "STOPACCEL = 40000\n",
+    }
+    text = (EXAMPLE / "machine.toml").read_text().replace("16_000_000", "48_000_000")
+    found = run_linuxcnc("G21 G90 G64 P0.01\nG1 F6000 X12 Y6\nX2\nM2\n", changes=changes, text=text)
+    assert found.homed and found.ended and not found.said, (found.said, found.log)
+    assert found.positions == pytest.approx([2, 6, 0], abs=1e-9)
+    assert number_of(found.pins["passo.0.queue.lag"]) == 14
+    assert max(found.ferror) <= FASTEST * PERIOD / 4 * (14 + LATE) + 1 / SCALES[0]
+
+
 def test_threads() -> None:
     """Passes of G33, from different places, in step with the encoder: pitch and phase at the pins.
 
@@ -53,6 +89,13 @@ def test_threads() -> None:
     assert found.positions == pytest.approx([8, 2], abs=1e-9)
     assert is_in_step(found, [200, 200])
     assert fits(threads(found)), threads(found)
+
+
+def test_short_lines_on_the_verilated_core() -> None:
+    """And the model, compared at each edge; more of them: `make hosts`."""
+    found = measure(programs(100)["both"])
+    assert found.is_good, figure(found)
+    assert found.edges > 3000
 
 
 def test_home_by_index() -> None:
@@ -143,6 +186,23 @@ def test_settings_that_are_wrong() -> None:
     assert not any(moves_of(events, axis).any() for axis in range(3))
 
 
+def test_a_thread_that_stops() -> None:
+    """The core stops the axis and switches its drive off; `has-bit` says so until it is cleared."""
+    pause = "loadusr -w sleep 1\n"
+    script = SCRIPT.replace("AXES", "1 watchdog_ms=2000").replace("maxaccel 4000", "maxaccel 2000")
+    script += f"{STEPGEN}enable 1\n{pause}{STEPGEN}position-cmd 300\n{pause}stop\nloadusr -w sleep 8\n"
+    look = "getp passo.0.watchdog.has-bit\ngetp passo.0.fault\n"
+    script += f"start\n{pause}{look}{STEPGEN}enable 0\n{pause}{STEPGEN}enable 1\n{pause}getp passo.0.state\n"
+    script += f"{STEPGEN}enable 0\nsetp passo.0.watchdog.has-bit 0\n{pause}{STEPGEN}enable 1\n{pause}"
+    script += f"{look}getp passo.0.state\n"
+    said, events = run_hal(script, real_time=True)
+    assert said.count("passo: motion: WATCHDOG: ") == 1, said
+    idle, running = "0", "3"
+    assert re.findall(r"^(TRUE|FALSE|\d)$", said, re.M) == ["TRUE", "TRUE", idle, "FALSE", "FALSE", running]
+    on = np.flatnonzero(np.diff(events["enable"] & np.uint64(1), prepend=np.uint64(0)) == 1)
+    assert len(on) == 2 and moves_of(events[on[0] : on[1]], 0).any()
+
+
 @pytest.mark.parametrize(
     ("axes", "device", "sentence"),
     [
@@ -224,7 +284,8 @@ def test_make_for_a_board(tmp_path: Path) -> None:
     (tmp_path / "router.toml").write_text('host = "linuxcnc"\n' + router)
     assert main(["make", str(tmp_path / "router.toml"), "--out", str(tmp_path / "out"), "--no-build"]) == 0
     names = {path.name for path in (tmp_path / "out").iterdir()}
-    assert names == {"machine.ini", "machine.hal", "tool.tbl", "wiring.txt", "summary.txt"}
+    drawn = {f"wiring.{kind}" for kind in ("txt", "svg", "html")}
+    assert names == {"machine.ini", "machine.hal", "tool.tbl", "summary.txt"} | drawn
     wires = (tmp_path / "out" / "wiring.txt").read_text()
     assert re.search(r"^spi_sclk .* Raspberry Pi 23$", wires, re.M) and "Blue Pill" not in wires
     shared = 'host = "linuxcnc"\nclock_hz = 8_000_000\nkinematics = "corexy"\n'

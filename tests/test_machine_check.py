@@ -14,8 +14,9 @@ from passo.cli import main
 from passo.failure import Failure
 from passo.grbl import Grbl, pseudo_terminal, serve
 from passo.grbl_setup import core_for
-from passo.machine_check import Input, SerialPort, SimulatedPort, all_inputs, check, simulated
+from passo.machine_check import Input, SimulatedPort, all_inputs, check, simulated
 from passo.machine_file import MachineFile, read_machine
+from passo.serial_port import Conversation, SerialPort
 from passo.toolchain import paths
 
 MACHINES = sorted((paths.examples / "machines").glob("*.toml"))
@@ -26,8 +27,9 @@ INVERTED = replace(ROUTER, switches=replace(ROUTER.switches, inverted=True))
 @pytest.fixture(autouse=True)
 def _quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """A person presses immediately, and sees short blinks."""
-    for name, seconds in (("PRESSED", 0.3), ("GREETING", 0.2), ("BLINK", 0.02), ("LOOK", 0.01)):
+    for name, seconds in (("PRESSED", 0.3), ("GREETING", 0.2), ("BLINK", 0.02)):
         monkeypatch.setattr(machine_check, name, seconds)
+    monkeypatch.setattr(Conversation, "LOOK", 0.01)
 
 
 class Watched(SimulatedPort):
@@ -155,8 +157,8 @@ def test_a_serial_port(
     terminal: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The same words; a person who does not press is told so."""
-    for name, seconds in (("GREETING", 0.5), ("LOOK", 0.05)):
-        monkeypatch.setattr(machine_check, name, seconds)
+    monkeypatch.setattr(machine_check, "GREETING", 0.5)
+    monkeypatch.setattr(Conversation, "LOOK", 0.05)
     assert main(["check", str(ROUTER.path), "--port", str(terminal)]) == 1
     told = capsys.readouterr()
     assert "core 0.4.0, 96 MHz" in told.out and "press X: home switch" in told.out
@@ -170,8 +172,8 @@ def test_no_port(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch
     (tmp_path / "file").touch()
     assert main(["check", str(ROUTER.path), "--port", str(tmp_path / "file")]) == 2
     assert str(tmp_path / "file") in capsys.readouterr().err
-    for name in ("GREETING", "ANSWER"):
-        monkeypatch.setattr(machine_check, name, 0.1)
+    monkeypatch.setattr(machine_check, "GREETING", 0.1)
+    monkeypatch.setattr(Conversation, "ANSWER", 0.1)
     silent = tmp_path / "silent"
     no_answer = pytest.raises(Failure, match=r"no answer to \$X: is it the grbl image")
     with pseudo_terminal(silent), SerialPort(silent) as port, no_answer:

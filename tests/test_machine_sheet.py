@@ -13,9 +13,14 @@ from passo.machine_sheet import NOTES
 from passo.toolchain import paths
 
 ROUTER = (paths.examples / "machines" / "router.toml").read_text()
+LINUX = 'host = "linuxcnc"\n'
 SVG = "{http://www.w3.org/2000/svg}"
 LETTER = 6.4  # width of a letter at most, on average of a word, in units of the drawing
 BOARDS = ("hx8k", "icebreaker", "tangnano9k")
+HOSTS = pytest.mark.parametrize(
+    ("board", "head", "host"),
+    [*((board, "", "Blue Pill") for board in BOARDS), ("hx8k", LINUX, "Raspberry Pi")],
+)
 
 
 def sheet(folder: Path, text: str) -> tuple[list[list[str]], ElementTree.Element, str]:
@@ -28,25 +33,27 @@ def sheet(folder: Path, text: str) -> tuple[list[list[str]], ElementTree.Element
     return rows, drawing, (out / "wiring.html").read_text()
 
 
-@pytest.mark.parametrize("board", BOARDS)
-def test_every_wire_is_drawn_and_in_the_table(tmp_path: Path, board: str) -> None:
+@HOSTS
+def test_every_wire_is_drawn_and_in_the_table(tmp_path: Path, board: str, head: str, host: str) -> None:
     """A line for each that leads somewhere, with its place and its end; a row for each."""
-    rows, drawing, page = sheet(tmp_path, ROUTER.replace("hx8k", board))
+    rows, drawing, page = sheet(tmp_path, head + ROUTER.replace("hx8k", board))
     texts = [text.text or "" for text in drawing.iter(f"{SVG}text")]
     used = [row for row in rows if row[-1] not in ("not connected", "on the board")]
     assert len(list(drawing.iter(f"{SVG}path"))) == len(used) + 1  # and that of ground
+    assert host in texts and f"FPGA board, {host}, buffers" in page
+    assert sum(row[-1].startswith(f"{host} ") for row in rows) == 5  # SPI and irq
     for signal, pin, *place, end in used:
         assert signal in texts and (place or [pin])[0] in texts
-        label = end.removeprefix("Blue Pill ").partition(", ")[0]
+        label = end.removeprefix(f"{host} ").partition(", ")[0]
         assert re.sub("^drive .: ", "", label) in texts
     cells = [re.findall("<td[^>]*>(.*?)</td>", row) for row in re.findall(r"<tr>(<td.*?)</tr>", page)]
     assert [[cell[3], cell[2], cell[4]] for cell in cells] == [[row[0], row[1], row[-1]] for row in rows]
 
 
-@pytest.mark.parametrize("board", BOARDS)
-def test_no_words_run_into_others(tmp_path: Path, board: str) -> None:
+@HOSTS
+def test_no_words_run_into_others(tmp_path: Path, board: str, head: str, host: str) -> None:
     """Nor out of the drawing."""
-    _, drawing, _ = sheet(tmp_path, ROUTER.replace("hx8k", board))
+    _, drawing, _ = sheet(tmp_path, head + ROUTER.replace("hx8k", board))
     lines: dict[float, list[tuple[float, float, str]]] = {}
     for text in drawing.iter(f"{SVG}text"):
         words = text.text or ""

@@ -1,20 +1,32 @@
 # SPDX-License-Identifier: MIT
-"""The core that a program drives: simulated in this process, or at a device of Linux."""
+"""The core that a program drives: simulated in this process, at a device of Linux, or behind an STM32F103."""
 
+from collections.abc import Sequence
 from contextlib import ExitStack
-from typing import Protocol
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
 
 from passo.build import Parameters
-from passo.driver import Driver
+from passo.driver import Driver, DriverError, Source
 from passo.failure import Failure
 from passo.grbl_setup import machine_at
+from passo.host_home import Homing, configure_inputs
 from passo.host_loop import HostLoop, Steps
+from passo.host_serial import SerialCore, is_serial
 from passo.link import error_name
 from passo.machine_file import MachineFile
 from passo.native import ffi, planner
-from passo.part import LOOPS_PER_SECOND
+from passo.part import LOOPS_PER_SECOND, configure
+from passo.serial_port import SerialPort
+from passo.timed import TimedPoints
 
 SIMULATED = ("model", "rtl", "both")
+STOP_POLLS = 100_000  # until a soft stop has ended, at most
+
+Array = np.ndarray[Any, np.dtype[Any]]
+Planned = tuple[Sequence[Any], Sequence[Any]]  # struct passo_line, struct passo_ramp
 
 
 class Core(Protocol):
@@ -22,15 +34,36 @@ class Core(Protocol):
 
     parameters: Parameters
 
+    def configure(self, file: MachineFile) -> None:
+        """Set it up for a machine. Raises BadInputError, DriverError."""
+
+    def positions(self) -> Array:
+        """Of the motors, in steps."""
+
     @property
-    def driver(self) -> Driver:
-        """Of its channel, open."""
+    def is_moving(self) -> bool:
+        """Whether what was begun has not ended yet."""
+
+    def path(self, planned: Planned, places: Array, speed: float | None) -> None:
+        """Begin a path through places (point x axis, mm), planned here."""
+
+    def follow(self, points: TimedPoints) -> None:
+        """Begin timed points."""
+
+    def home(self, homing: Homing, axes: str) -> None:
+        """Begin to home the axes; empty: all."""
+
+    def call(self, name: str, *arguments: int) -> None:
+        """hold, resume, override, stop, clear."""
+
+    def halt(self) -> None:
+        """Bring all to rest, whatever runs, and clear it; nothing if it has stopped for another cause."""
 
     def begin(self) -> None:
         """A motion begins."""
 
     def turn(self) -> float:
-        """Poll the driver; return the seconds until the next poll is due, 0 in simulated time."""
+        """Go on; return the seconds until the next turn is due, 0 in simulated time."""
 
     def steps(self, motors: int) -> Steps | None:
         """The steps since `begin`; None: nobody sees the pins."""
@@ -43,7 +76,65 @@ class Core(Protocol):
         """Let it go."""
 
 
-class SimulatedCore:
+class DriverCore:
+    """What the driver does."""
+
+    driver: Driver
+    _motors: int
+
+    def configure(self, file: MachineFile) -> None:
+        """Pins, switches and drives."""
+        self._motors = len(file.motors)
+        configure(self.driver, file, enable_inverted=file.enable_inverted)
+        if file.has_inputs:
+            configure_inputs(self.driver, file)
+
+    def positions(self) -> Array:
+        """Of the motors, in steps."""
+        return np.array(self.driver.positions()[: self._motors])
+
+    @property
+    def is_moving(self) -> bool:
+        """As of the last turn."""
+        return self.driver.is_moving
+
+    def path(self, planned: Planned, places: Array, speed: float | None) -> None:
+        """Stream it."""
+        self.driver.stream(Source(*planned))
+
+    def follow(self, points: TimedPoints) -> None:
+        """Begin timed points."""
+        points.start(self.driver)
+
+    def home(self, homing: Homing, axes: str) -> None:
+        """Begin to home."""
+        homing.start(self.driver)
+
+    def call(self, name: str, *arguments: int) -> None:
+        """Of the driver."""
+        self.driver.call(name, *arguments)
+
+    def turn(self) -> float:
+        """Poll the driver."""
+        raise NotImplementedError
+
+    def halt(self) -> None:
+        """Bring all to rest, whatever runs, and clear it; nothing if it has stopped for another cause."""
+        driver = self.driver
+        if driver.fault != "OK" or not driver.is_moving:
+            return
+        driver.attempt("stop")
+        for _ in range(STOP_POLLS):
+            try:
+                self.turn()
+            except DriverError:
+                break
+            if not driver.is_moving:
+                break
+        driver.attempt("clear")
+
+
+class SimulatedCore(DriverCore):
     """An engine with the machine at its pins; time passes only in `turn`."""
 
     def __init__(self, name: str, file: MachineFile):
@@ -119,7 +210,7 @@ class _NoHardware:
         """Nothing."""
 
 
-class LinuxCore:
+class LinuxCore(DriverCore):
     """A core at a device of Linux: "/dev/spidev0.0", or "unix:/tmp/passo" of `passo serve`."""
 
     def __init__(self, device: str, file: MachineFile, speed_hz: int = 0):
@@ -149,4 +240,6 @@ class LinuxCore:
 
 def open_core(on: str, file: MachineFile, speed_hz: int) -> Core:
     """A simulated core of this name, or the one at this device. Raises Failure, DriverError."""
-    return SimulatedCore(on, file) if on in SIMULATED else LinuxCore(on, file, speed_hz)
+    if on in SIMULATED:
+        return SimulatedCore(on, file)
+    return SerialCore(SerialPort(Path(on)), file) if is_serial(on) else LinuxCore(on, file, speed_hz)

@@ -21,13 +21,11 @@ from typing import Any, Self
 import numpy as np
 
 from passo.course import Course
-from passo.driver import DriverError, Source
 from passo.failure import BadInputError, Failure
 from passo.host_core import Core, open_core
-from passo.host_home import Homing, configure_inputs
+from passo.host_home import Homing
 from passo.machine_file import MachineFile, read_machine
 from passo.motion import Array, Motion, PlannedMotion
-from passo.part import configure
 from passo.path import Path as PathPlanner
 from passo.plan import PlanError
 from passo.preview import LINE, RAMP, Planned
@@ -36,7 +34,6 @@ from passo.timed import MM_MAX, SECONDS_MAX, TimedPoints, spline
 LOOK_AHEAD_MIN = 4
 SPLINE_PERIOD = 0.002  # s
 PERCENT = 100
-STOP_POLLS = 100_000  # until a soft stop has ended, at most
 
 
 class Machine:
@@ -52,9 +49,7 @@ class Machine:
         self.clock_hz = file.clock_hz
         self.letters = file.letters  # of the axes
         self.motors = file.motors  # names, in the order of the core
-        configure(core.driver, file, enable_inverted=file.enable_inverted)
-        if file.has_inputs:
-            configure_inputs(core.driver, file)
+        core.configure(file)
         self._settings = file.settings.struct(core.parameters)
 
     @classmethod
@@ -62,8 +57,9 @@ class Machine:
         """The machine of a file (docs/gcode.md), on a core.
 
         `on` is a simulation in this process: "model"; "rtl", the Verilated core; "both", compared edge by
-        edge; or a device: "/dev/spidev0.0", or "unix:/tmp/passo" of `passo serve`. `speed_hz`: of SCLK at a
-        device; 0: 4 MHz. Raises BadInputError, and OpenError with one sentence that says what to do.
+        edge; or a device: "/dev/spidev0.0", "unix:/tmp/passo" of `passo serve`, or "/dev/ttyUSB0", the grbl
+        image of an STM32F103. `speed_hz`: of SCLK at a device; 0: 4 MHz. Raises BadInputError, and OpenError
+        with one sentence that says what to do.
         """
         file = read_machine(Path(path))
         core = open_core(on, file, speed_hz)
@@ -95,7 +91,7 @@ class Machine:
 
     def steps(self) -> Array:
         """Where the motors are now, in steps."""
-        return np.array(self.core.driver.positions()[: len(self.motors)])
+        return self.core.positions()
 
     def axes_of(self, steps: Array) -> Array:
         """Positions of the axes, in mm, of those of the motors, in steps; the last dimension is which one."""
@@ -135,13 +131,12 @@ class Machine:
             lines.append(line)
         while (ramp := path.next_ramp()) is not None:
             ramps.append(ramp)
-        driver = self.core.driver
         planned = _planned(self, lines, ramps, path.substeps_per_mm)
         course = Course(planned, self.axes_of(begin[None])[0])
 
         def start() -> None:
             if lines:
-                driver.stream(Source(lines, ramps))
+                self.core.path((lines, ramps), places, speed)
 
         return PlannedMotion(self, start, begin, course.seconds, course.places, course)
 
@@ -184,58 +179,46 @@ class Machine:
         def positions_at(asked: Array) -> Array:
             return np.stack([np.interp(asked, whole, column) for column in course.T], axis=1)
 
-        return PlannedMotion(
-            self, lambda: points.start(self.core.driver), begin, float(whole[-1]), positions_at
-        )
+        return PlannedMotion(self, lambda: self.core.follow(points), begin, float(whole[-1]), positions_at)
 
     def home(self, axes: str = "") -> Motion:
         """Home these axes, or all that have a home, Z first: at low ends 0, at high ends the travel."""
         homing = Homing(self.file, axes.upper())
-        return Motion(self, lambda: homing.start(self.core.driver), self.steps())
+        return Motion(self, lambda: self.core.home(homing, axes), self.steps())
 
     def hold(self) -> None:
         """Feed hold."""
-        self.core.driver.call("hold")
+        self.core.call("hold")
 
     def resume(self) -> None:
         """Go on after `hold`."""
-        self.core.driver.call("resume")
+        self.core.call("resume")
 
     def override(self, percent: int) -> None:
         """Of all speeds, 1 to 100."""
-        self.core.driver.call("override", percent)
+        self.core.call("override", percent)
 
     def stop(self) -> None:
         """Soft stop; what runs raises DriverError or ends, then `clear`."""
-        self.core.driver.call("stop")
+        self.core.call("stop")
 
     def clear(self) -> None:
         """After a stop of any cause: accept motions again."""
-        self.core.driver.call("clear")
+        self.core.call("clear")
 
     def require(self, begin: Array) -> None:
         """Raises Failure unless the machine is open, at rest, and the motors are there."""
         if self.is_closed:
             raise Failure("the machine is closed")
-        if self.core.driver.is_moving:
+        if self.core.is_moving:
             raise Failure("another motion is not over yet")
         if (now := self.steps()).tolist() != begin.tolist():
             raise Failure(f"planned from {begin.tolist()}, but the motors are at {now.tolist()}: plan again")
 
     def halt(self) -> None:
         """Bring all to rest, whatever runs, and clear it; nothing if it has stopped for another cause."""
-        driver = self.core.driver
-        if self.is_closed or driver.fault != "OK" or not driver.is_moving:
-            return
-        driver.attempt("stop")
-        for _ in range(STOP_POLLS):
-            try:
-                self.core.turn()
-            except DriverError:
-                break
-            if not driver.is_moving:
-                break
-        driver.attempt("clear")
+        if not self.is_closed:
+            self.core.halt()
 
     @property
     def _scales(self) -> Array:

@@ -5,33 +5,26 @@ Each switch is pressed once by hand and must be the only one that answers; each 
 makes steps to and fro, one at a time. Nothing else moves; the power of spindle or laser stays 0.
 """
 
-import os
 import re
-import select
-import termios
-import time
-import tty
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, NamedTuple, Protocol, Self
+from typing import Any, NamedTuple, Protocol
 
 from passo_fpga.boards import board
 from passo_fpga.generate import generate
 
-from passo.failure import BadInputError, Failure
+from passo.failure import Failure
 from passo.grbl import Grbl
 from passo.grbl_setup import core_for
 from passo.machine_file import MachineFile, read_machine
 from passo.make_command import core_of, wired
 from passo.run import open_engine
+from passo.serial_port import RESET, Conversation, Line, SerialPort
 
-RESET, REPORT = b"\x18", b"?"
-ANSWER = 2.0  # seconds until a line is answered
 GREETING = 3.0  # seconds after a reset
 PRESSED = 60.0  # seconds that a person has for a switch
-LOOK = 0.05  # seconds between two looks
 FEED = 60  # mm/min of a step
 RESOLUTION = 0.0011  # mm, of two positions in status reports
 REVERSE = "M4 S0"  # a laser has proportional power instead
@@ -53,56 +46,17 @@ class Input(NamedTuple):
     letter: str
 
 
-class Port(Protocol):
-    """A serial line to the firmware."""
-
-    def write(self, data: bytes) -> None:
-        """Send bytes."""
-
-    def read(self, seconds: float) -> str:
-        """Let this time pass; return what was received."""
+class Port(Line, Protocol):
+    """A serial line to the firmware, and a hand at the switches."""
 
     def press(self, pressed: Input, active: bool) -> None:
         """Press or release an input, if that is not up to a person."""
 
 
-class SerialPort:
-    """A serial port of this computer."""
-
-    def __init__(self, path: Path):
-        try:
-            self._file = os.open(path, os.O_RDWR | os.O_NOCTTY)
-            tty.setraw(self._file)
-            settings = termios.tcgetattr(self._file)
-            settings[4] = settings[5] = termios.B115200
-            termios.tcsetattr(self._file, termios.TCSANOW, settings)
-        except (OSError, termios.error) as error:
-            raise BadInputError(f"{path}: {error.args[-1]}") from None
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        os.close(self._file)
-
-    def write(self, data: bytes) -> None:
-        """Send bytes."""
-        os.write(self._file, data)
-
-    def read(self, seconds: float) -> str:
-        """Let this time pass; return what was received."""
-        end, received = time.monotonic() + seconds, b""
-        while (left := end - time.monotonic()) > 0:
-            if select.select([self._file], [], [], left)[0]:
-                received += os.read(self._file, 4096)
-        return received.decode("latin-1")
-
-    def press(self, pressed: Input, active: bool) -> None:
-        """A person does it."""
-
-
 class SimulatedPort:
     """The firmware's protocol on a simulated core, and a hand at its switches."""
+
+    real_time = False
 
     def __init__(self, engine: Any, machine: MachineFile):
         self.engine, self._machine, self._levels, self._said = engine, machine, {}, []
@@ -120,6 +74,9 @@ class SimulatedPort:
         said = "".join(self._said)
         self._said.clear()
         return said
+
+    def close(self) -> None:
+        """The engine is the caller's."""
 
     def press(self, pressed: Input, active: bool) -> None:
         """Change the level of its pin."""
@@ -165,36 +122,12 @@ def all_inputs(machine: MachineFile) -> list[Input]:
     return [*found, *probe, Input("estop_n", 1, "e-stop", "R")]
 
 
-class _Check:
-    """A conversation; raises Failure with the first thing that is wrong."""
+class _Check(Conversation):
+    """Raises Failure with the first thing that is wrong."""
 
     def __init__(self, machine: MachineFile, port: Port, tell: Callable[[str], None]):
+        super().__init__(port)
         self.machine, self.port, self.tell = machine, port, tell
-
-    def line(self, text: str, seconds: float = ANSWER) -> str:
-        """Send a line; return what is said before its answer."""
-        self.port.write(text.encode() + b"\n")
-        said = ""
-        for _ in range(round(seconds / LOOK)):
-            said += self.port.read(LOOK)
-            if found := re.search(r"^(ok|error:\d+)\r?$", said, re.M):
-                if found[1] != "ok":
-                    raise Failure(f"{text} was refused: {found[1]} (docs/gcode.md)")
-                return said[: found.start()]
-        raise Failure(f"no answer to {text}: is it the grbl image, at 115200 baud?")
-
-    def report(self) -> dict[str, str]:
-        """A status report, by its fields."""
-        self.port.write(REPORT)
-        said = ""
-        for _ in range(round(ANSWER / LOOK)):
-            said += self.port.read(LOOK)
-            if found := re.findall(r"<(.*?)>", said):
-                break
-        else:
-            raise Failure("no status report: is it the grbl image, at 115200 baud?")
-        state, *fields = found[-1].split("|")
-        return {"state": state, **dict(field.split(":", 1) for field in fields)}
 
     def active(self) -> set[str]:
         """Letters of the active inputs."""
@@ -233,7 +166,7 @@ class _Check:
             self._until(set(), port)
 
     def _until(self, wanted: set[str], port: Input) -> None:
-        for _ in range(round(PRESSED / LOOK)):
+        for _ in range(round(PRESSED / self.LOOK)):
             found = self.active()
             if found == wanted:
                 return
@@ -270,7 +203,7 @@ class _Check:
                     raise Failure(f"{letter} moved by {made:.3f} mm, not by {sign * step:.4f}")
 
     def _rest(self) -> None:
-        for _ in range(round(ANSWER / LOOK)):
+        for _ in range(round(self.ANSWER / self.LOOK)):
             if self.report()["state"] == "Idle":
                 return
         raise Failure("the motor does not come to rest")

@@ -7,7 +7,7 @@ from html import escape
 from itertools import groupby
 from typing import NamedTuple
 
-HOST, UNUSED = "Blue Pill", ("ground", "not connected", "on the board")
+UNUSED = ("ground", "not connected", "on the board")
 ROW, GAP, TOP = 19, 30, 64  # heights in SVG units
 WIDTH = 1120
 HOST_X, HOST_W, CHIP_X, CHIP_W, BUFFER_X, BUFFER_W, END_X, END_W = 10, 110, 240, 290, 600, 120, 800, 310
@@ -38,8 +38,8 @@ ENCODERS = (
     "5 V through a 74LVC245 at 3.3 V, open collectors get 1 kohm to 3.3 V. Ground the shield at one end."
 )
 GROUNDS = (
-    "Grounds: FPGA board, Blue Pill, buffers and logic inputs have one, joined at one point; another wire "
-    "of ground is beside the SPI wires, at most 10 cm long. The supply of the motors reaches it nowhere else."
+    "Grounds: FPGA board, {host}, buffers and logic inputs have one, joined at one point; another wire "
+    "of ground is beside the SPI wires, {wires}. The supply of the motors reaches it nowhere else."
 )
 VIA = {"logic": "33 to 100 ohm", "opto-5V": BUFFER, "24V": "24 V driver", "RS-422": "AM26LV31", "": ""}
 
@@ -58,6 +58,17 @@ class Wire(NamedTuple):
         return self.place or self.pin
 
 
+class Host(NamedTuple):
+    """The computer at the SPI wires."""
+
+    name: str
+    ground: str  # its pin
+    wires: str  # what they must be
+
+
+BLUE_PILL = Host("Blue Pill", "GND", "at most 10 cm long")
+
+
 @dataclass(frozen=True)
 class Sheet:
     """What a sheet tells. `drive_input` is a key of NOTES; `inverted`: switches are active low."""
@@ -69,6 +80,7 @@ class Sheet:
     inverted: bool
     wires: Sequence[Wire]
     summary: Sequence[str]
+    host: Host = BLUE_PILL
 
     @property
     def buffered(self) -> list[Wire]:
@@ -114,7 +126,7 @@ class Sheet:
             yield ESTOP
         if any(_is_encoder(wire) for wire in self.wires):
             yield ENCODERS
-        yield GROUNDS
+        yield GROUNDS.format(host=self.host.name, wires=self.host.wires)
 
 
 _CONTACTS = {
@@ -176,8 +188,8 @@ rect { fill: #f6f8fa; stroke-width: 1.5; stroke: #57606a } .fpga { stroke: #0b6e
 
 
 def draw(sheet: Sheet) -> str:
-    """The SVG: Blue Pill, FPGA board, buffers, and what the machine has, with a line for each wire."""
-    link = [wire for wire in sheet.wires if wire.end.startswith(HOST)]
+    """The SVG: host, FPGA board, buffers, and what the machine has, with a line for each wire."""
+    link = [wire for wire in sheet.wires if wire.end.startswith(sheet.host.name)]
     used = [
         wire for wire in sheet.wires if wire not in link and wire.end not in ("not connected", "on the board")
     ]
@@ -192,9 +204,9 @@ def draw(sheet: Sheet) -> str:
             y += ROW
         y += GAP
     low = max(y - GAP, TOP + ROW * 2 * (len(link) + 1)) + 4
-    parts += _host(link)
+    parts += _host(sheet.host, link)
     boxes = [
-        _box(HOST_X, TOP, HOST_W, ROW * 2 * (len(link) + 1), HOST, "host"),
+        _box(HOST_X, TOP, HOST_W, ROW * 2 * (len(link) + 1), sheet.host.name, "host"),
         _box(CHIP_X, TOP, CHIP_W, low - TOP, sheet.board, "fpga"),
     ]
     under = "on the FPGA board, from the right: its print, the signal, the pin of the package"
@@ -230,10 +242,10 @@ def _wire(sheet: Sheet, wire: Wire, y: float) -> Iterator[str]:
     yield _text(END_X + 8, y + 4, label.partition(",")[0] if wire.signal == "estop_n" else label)
 
 
-def _host(link: Iterable[Wire]) -> Iterator[str]:
+def _host(host: Host, link: Iterable[Wire]) -> Iterator[str]:
     wires = [
-        *((wire.end.removeprefix(f"{HOST} "), wire.signal, wire.at) for wire in link),
-        ("GND", "ground", "GND"),
+        *((wire.end.removeprefix(f"{host.name} "), wire.signal, wire.at) for wire in link),
+        (host.ground, "ground", "GND"),
     ]
     for number, (pin, signal, at) in enumerate(wires):
         y = TOP + ROW * (2 * number + 1)

@@ -24,7 +24,7 @@ from passo.failure import BadInputError, Failure
 from passo.grbl_setup import MILLION, default_settings, encoders_of, setting_counts
 from passo.linuxcnc_files import linuxcnc_files
 from passo.machine_file import CHIPS, MOTOR_KEYS, MachineFile, read_machine
-from passo.machine_sheet import Sheet, Wire, draw, page
+from passo.machine_sheet import BLUE_PILL, Host, Sheet, Wire, draw, page
 from passo.native import ffi, planner
 from passo.output import empty_folder, write_text
 from passo.path import Motors
@@ -33,6 +33,7 @@ from passo.toolchain import need_repository, paths
 
 SETTINGS, WIRING, SUMMARY, COMMANDS = "settings.txt", "wiring.txt", "summary.txt", "flash.sh"
 DRAWING, PAGE = "wiring.svg", "wiring.html"
+RASPBERRY_PI = "Raspberry Pi"
 FIRMWARE = "firmware"  # folder of its images
 SMALL, LARGE = CHIPS
 CHIP_AXES = {SMALL: 3, LARGE: 6}  # of the G-code
@@ -72,20 +73,14 @@ def make_machine(path: Path, out: Path | None = None, build: bool = True) -> boo
     _check_firmware(machine)
     chosen = board(machine.board)
     try:
-        wires = list(_wires(machine, chosen, {name: f"Blue Pill {pin}" for name, pin in host_pins().items()}))
+        wires = list(_wires(machine, chosen, _to(BLUE_PILL, host_pins())))
     except BoardError as error:
         raise BadInputError(f"{path}: {error}") from None
     summary = list(_summary(machine, chosen))
     folder = out or _folder(path)
-    kind = drives()[machine.drive].input if machine.drive else ""
-    title = f"{path.stem}: wiring"
-    facts = title, chosen.title, machine.drive, kind, machine.switches.inverted, wires, summary
-    sheet = Sheet(*facts)
     results = {
         SETTINGS: settings_lines(machine),
-        WIRING: _aligned([("signal", "FPGA pin", "on the board", "to"), *wires]),
-        DRAWING: [draw(sheet)],
-        PAGE: [page(sheet)],
+        **_sheet(machine, chosen, BLUE_PILL, wires, summary),
         COMMANDS: list(_commands(chosen, path.stem)),
     }
     empty_folder(folder, (*results, SUMMARY))
@@ -97,6 +92,26 @@ def make_machine(path: Path, out: Path | None = None, build: bool = True) -> boo
     return FAILED_BITSTREAM not in images
 
 
+def _sheet(
+    machine: MachineFile, chosen: Board, host: Host, wires: list[Wire], summary: list[str]
+) -> dict[str, list[str]]:
+    """The wires: as a table, drawn, and as a page to print."""
+    kind = drives()[machine.drive].input if machine.drive else ""
+    title = f"{machine.path.stem}: wiring"
+    facts = title, chosen.title, machine.drive, kind, machine.switches.inverted, wires, summary
+    sheet = Sheet(*facts, host)
+    return {
+        WIRING: _aligned([("signal", "FPGA pin", "on the board", "to"), *wires]),
+        DRAWING: [draw(sheet)],
+        PAGE: [page(sheet)],
+    }
+
+
+def _to(host: Host, pins: dict[str, str]) -> dict[str, str]:
+    """Where the wires of these signals lead."""
+    return {name: f"{host.name} {pin}" for name, pin in pins.items()}
+
+
 def _folder(path: Path) -> Path:
     return Path(paths.results) / "machines" / path.stem
 
@@ -106,12 +121,14 @@ def _make_linuxcnc(machine: MachineFile, folder: Path, build: bool) -> bool:
     chosen = board(machine.board) if machine.board else None
     results, summary = linuxcnc_files(machine), [f"{machine.path.name}: LinuxCNC"]
     if chosen:
+        pins = raspberry_pins()
+        host = Host(RASPBERRY_PI, pins["ground"], "below 20 cm, with 33 ohm in series at the source of SCLK")
         try:
-            wires = list(_wires(machine, chosen, raspberry_pins()))
+            wires = list(_wires(machine, chosen, _to(host, pins)))
         except BoardError as error:
             raise BadInputError(f"{machine.path}: {error}") from None
-        results[WIRING] = _aligned([("signal", "FPGA pin", "on the board", "to"), *wires])
         summary = [*_summary(machine, chosen, "LinuxCNC")]
+        results |= _sheet(machine, chosen, host, wires, summary)
     empty_folder(folder, (*results, SUMMARY))
     for name, lines in results.items():
         write_text(folder / name, "\n".join([*lines, ""]))
@@ -122,11 +139,11 @@ def _make_linuxcnc(machine: MachineFile, folder: Path, build: bool) -> bool:
 
 
 def raspberry_pins() -> dict[str, str]:
-    """Pins of its header by the signal of the core, from the table in docs/hosts.md."""
+    """Pins of its header by the signal of the core, and `ground`: the table in docs/hosts.md."""
     text = (paths.docs / "hosts.md").read_text(encoding="utf-8")
-    names = {"SCLK": "spi_sclk", "MOSI": "spi_mosi", "MISO": "spi_miso", "CS": "spi_cs_n", "irq": "irq"}
-    rows = re.findall(r"^\| (\w+)(?: \([^|]*\))? \| (\d+) \|", text, re.M)
-    return {names[name]: f"Raspberry Pi {pin}" for name, pin in rows if name in names}
+    names = {"SCLK": "spi_sclk", "MOSI": "spi_mosi", "MISO": "spi_miso", "CS": "spi_cs_n"}
+    rows = re.findall(r"^\| (\w+)(?: \([^|]*\))? \| (\d+)(?: or \d+)? \|", text, re.M)
+    return {names.get(name, name): pin for name, pin in rows}
 
 
 def _check_firmware(machine: MachineFile) -> None:

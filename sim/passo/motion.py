@@ -111,7 +111,7 @@ class Motion:
         core.begin()
         try:
             self._start()
-            while core.driver.is_moving:
+            while core.is_moving:
                 yield core.turn()
                 if machine.is_closed:
                     raise Failure("the machine was closed during the motion")

@@ -140,10 +140,10 @@ def _call(folder: Path, *command: str, seconds: int = SECONDS_MAX) -> subprocess
     return subprocess.CompletedProcess(command, called.returncode, out, err)
 
 
-def run_hal(script: str, device: str = "", text: str = "") -> tuple[str, Any]:
+def run_hal(script: str, device: str = "", text: str = "", real_time: bool = False) -> tuple[str, Any]:
     """What is said to a script of halcmd, and the events of the pins; CORE in it is the device.
 
-    `text`: of another machine file than that of the example.
+    `text`: of another machine file than that of the example; `real_time`: time passes without the program.
     """
     with alone() as folder:
         installed()
@@ -152,7 +152,7 @@ def run_hal(script: str, device: str = "", text: str = "") -> tuple[str, Any]:
         folder.chmod(0o777)
         (folder / "machine.toml").write_text(text or (EXAMPLE / "machine.toml").read_text())
         with served("model", read_machine(folder / "machine.toml")) as core:
-            with serving(core, place, keep=True) as server:
+            with serving(core, place, keep=True, real_time=real_time) as server:
                 place.chmod(0o777)
                 done = _call(folder, "halrun", "-f", "script.hal")
             events = server.events
