@@ -4,6 +4,7 @@
 import io
 import json
 import math
+import re
 import sys
 from collections.abc import Sequence
 from dataclasses import replace
@@ -13,6 +14,8 @@ import numpy as np
 import pytest
 from passo import cli
 from passo.course import Course
+from passo.expand.refusals import INSTEAD, NO_PORT, NOT_TAKEN, explain_text
+from passo.gcode import Gcode, GcodeError, GcodeSettings
 from passo.machine_file import MachineFile, read_machine
 from passo.part import Lines, Part, plan_part, play_part, read_part
 from passo.part_judge import path_of
@@ -144,6 +147,40 @@ def test_all_refused_lines_are_told(tmp_path: Path, capsys: pytest.CaptureFixtur
     path.write_text("G0 X1\nG0 X99999999\nX2\n")
     assert run(path, "--out", tmp_path) == 1
     assert f"{path}:2: " in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("G1 X1", "22: the feed is not set: write F with the first motion, such as G1 X1 F600"),
+        ("N7 G1 X1 (X2) Y1 X3 F1", "25: a word is repeated: X3: leave one out"),
+        ("G0 X1 M3 G1 Y1", "24: two commands that use the axis words: G1: split it into two lines"),
+        ("G17 X1 G18", "21: two commands of one modal group: G18: split"),
+        ("G4 P-1", "4: negative value not allowed: P-1: write it without its sign"),
+        ("G0 X1 Y.", "2: the number of a word is missing, malformed or above 999999999: Y.: write digits"),
+        ("G0 X1000000000", "999999999: X1000000000: write digits"),
+        ("/ G0 X1 ! Y1", "1: a word does not begin with a letter: !Y1: begin each word with a letter"),
+        ("G0 X1 \x01\xff", "1: a word does not begin with a letter: begin each word with a letter"),
+        ("G4", "28: the command needs a word that is missing: add what it needs: P to G4"),
+        ("G2 X9 R1 F1", "34: radius too small to reach the target: write a longer R"),
+        ("G10 L3 P1 X1", "20: unsupported or invalid command or word: each word is taken, but not beside"),
+    ],
+)
+def test_what_to_write_instead_of_a_line(line: str, told: str) -> None:
+    settings = GcodeSettings()
+    with pytest.raises(GcodeError) as refused:
+        Gcode(settings).execute(line)
+    assert told in explain_text(refused.value, line, settings)
+
+
+def test_each_error_of_the_interpreter_says_what_to_write_instead() -> None:
+    """Those that its sources make, by their numbers."""
+    numbers = re.findall(r"(PASSO_GCODE_\w+) = (\d+)", (paths.gcode / "passo_gcode_error.h").read_text())
+    sources = (path.read_text() for path in paths.gcode.glob("*.c") if path.name != "passo_gcode_error.c")
+    used = set(re.findall(r"\bPASSO_GCODE_\w+", " ".join(sources)))
+    made = {int(number) for name, number in numbers if name in used} - {0}
+    jog = 16  # of a sender alone
+    assert {1, 22, 36} <= made <= {*INSTEAD, *NOT_TAKEN, NO_PORT, jog}
 
 
 def test_a_part_of_a_program(tmp_path: Path) -> None:

@@ -246,15 +246,29 @@ def test_a_file_is_dropped(opened: Browser | Firefox) -> None:
     assert opened.value("passo.motion.axes[0].rises.length") == 240
 
 
-def test_keys_run_and_the_system_chooses_the_colors(tmp_path: Path, page: str) -> None:
+def test_the_system_chooses_the_colors(tmp_path: Path, page: str) -> None:
     with Browser(tmp_path / "browser", dark=True) as browser:
         browser.open(page, READY)
         assert browser.value("document.documentElement.dataset.theme") == "dark"
-        browser.value("(web.put('G1 F600 X3', 'G-code'), document.getElementById('lines').focus())")
-        press = "new KeyboardEvent('keydown', {key: 'Enter', ctrlKey: true, bubbles: true})"
-        browser.value(f"document.activeElement.dispatchEvent({press})")
-        browser.wait("web.done > 1")
-        assert browser.value("passo.motion.axes[0].rises.length") == 240
+
+
+def test_keys(opened: Browser | Firefox) -> None:
+    """Ctrl+Enter runs, also from the text, to which Enter adds a line; Escape cancels."""
+    opened.value("(web.put('G1 F600 X3', 'G-code'), document.getElementById('lines').focus())")
+    done = opened.value("web.done")
+    opened.press("Enter", ctrl=True)
+    opened.wait(f"web.done > {done}")
+    assert opened.value("passo.motion.axes[0].rises.length") == 240
+    assert opened.value("web.text") == "G1 F600 X3"
+    opened.press("Enter")
+    assert opened.value("web.text.split('\\n').length") == 2
+    assert opened.value("[web.done, !!web.running]") == [done + 1, False]
+    opened.value(f"web.put({json.dumps(LONG)}, 'G-code')")
+    opened.press("Enter", ctrl=True)
+    opened.wait("web.running")
+    opened.press("Escape")
+    opened.wait(f"web.done > {done + 1}")
+    assert opened.value(VERDICT).startswith("canceled")
 
 
 AXE = paths.root / ".venv" / "axe" / "node_modules" / "axe-core" / "axe.min.js"
@@ -351,11 +365,26 @@ G1 X1 F99 G99
 !
 /G93 G1 X1
 """
+WRONG = """G0 X1 M3 G1 Y1
+G17 X1 G18
+/ G0 X1 ! Y1
+G4 P-1
+G0 X1 Y. ; a comment
+G0 X1000000000
+G4
+N99999999
+G2 X9 R1 F1
+G10 L3 P1 X1
+G10 L2 P9 X1
+G43.1 X1
+G53 G2 X1 I1
+G80 X1
+"""
 ANSWER = "document.getElementById('answer').textContent"
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
-@pytest.mark.parametrize("program", [REFUSED, "G1 X1\n" * 30])
+@pytest.mark.parametrize("program", [REFUSED, WRONG, "G1 X1\n" * 30])
 def test_all_bad_lines_are_said_as_the_command_says_them(
     browser: Browser, tmp_path: Path, program: str, end: str
 ) -> None:

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, Self
 
 PROGRAM = "chromium-headless-shell"
+KEYS = {"Enter": (13, "\r"), "Escape": (27, "")}  # code and text
 
 
 @dataclass
@@ -101,6 +102,15 @@ class Browser:
                 "Input.dispatchMouseEvent",
                 type=kind, x=left + part * width, y=top + height / 2, clickCount=1,
                 button="none" if kind == "mouseMoved" and part == begin else "left", buttons=1,
+            )  # fmt: skip
+
+    def press(self, key: str, ctrl: bool = False) -> None:
+        """Press and release Enter or Escape where the focus is, as a person does."""
+        code, text = KEYS[key]
+        for kind in ("keyDown", "keyUp"):
+            self._call(
+                "Input.dispatchKeyEvent",
+                type=kind, key=key, code=key, windowsVirtualKeyCode=code, modifiers=2 if ctrl else 0, text=text,
             )  # fmt: skip
 
     @contextmanager

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, Self
 
 PROGRAM = "firefox-esr"
+KEYS = {"Enter": "\ue007", "Escape": "\ue00c"}
 START = 60  # seconds
 PREFERENCES = {"marionette.port": 0, "browser.shell.checkDefaultBrowser": False, "app.update.enabled": False}
 ANSWER = (
@@ -67,6 +68,13 @@ class Firefox:
         answer = self._call("WebDriver:ExecuteAsyncScript", script=ANSWER, args=[script], sandbox=None)
         assert "error" not in answer["value"], answer["value"]
         return answer["value"].get("value")
+
+    def press(self, key: str, ctrl: bool = False) -> None:
+        """Press and release Enter or Escape where the focus is, as a person does."""
+        keys = ["\ue009", KEYS[key]] if ctrl else [KEYS[key]]
+        actions = [{"type": "keyDown", "value": own} for own in keys]
+        actions += [{"type": "keyUp", "value": own} for own in reversed(keys)]
+        self._call("WebDriver:PerformActions", actions=[{"type": "key", "id": "keys", "actions": actions}])
 
     def _call(self, method: str, **params: Any) -> Any:
         self._number += 1

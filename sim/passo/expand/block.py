@@ -13,6 +13,8 @@ COMMENT = re.compile(r"\(([^)\r\n]*)\)?|;([^\r\n]*)")
 SHOWN = re.compile(r"#(?:<(?P<name>[^>]*)>|(?P<index>[0-9]+))|%(?:(?P<integer>d)|l?f|\.(?P<digits>[0-9])f)")
 UNKNOWN = "######"
 WORD = re.compile(r"([a-z])([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))")
+WORDS = re.compile(rf"/?(?:{WORD.pattern})*")
+VISIBLE, SHOWN_MOST = re.compile(r"[!-~]+"), 8
 BLANK = re.compile(r"[\x00-\x20]+")  # what an interpreter ignores
 VALUES_SHOWN = ("debug", "print", "log")
 DIGITS = 6  # after the point: those that Passo keeps
@@ -37,6 +39,13 @@ class Word:
 def words_of(text: str) -> list[Word]:
     """The words of a plain line."""
     return [Word(letter.upper(), float(value)) for letter, value in WORD.findall(split(text)[0])]
+
+
+def unread_of(text: str) -> str:
+    """Where the words of a plain line end before it does: the next characters, if they can be shown."""
+    bare = split(text)[0]
+    rest = bare[WORDS.match(bare).end() :][:SHOWN_MOST].upper()
+    return rest if VISIBLE.fullmatch(rest) else ""
 
 
 def shown(value: float) -> str:

@@ -3,11 +3,39 @@
 
 from collections.abc import Sequence
 
-from passo.expand.block import Word, words_of
+from passo.expand.block import Word, unread_of, words_of
 from passo.gcode import AXIS_LETTERS, Gcode, GcodeError, GcodeSettings
 
 NOT_TAKEN = frozenset((3, 20, 23))  # errors of a command that Passo does not have
 UNUSED, NO_PORT = 36, 39
+UNREAD = frozenset((1, 2))  # those of a text that is no word
+AT_WORD = frozenset((2, 4, 21, 24, 25, 27))  # errors that the first word which is wrong makes
+# What to write instead, by the error.
+INSTEAD = {
+    1: "begin each word with a letter: X1.5",
+    2: "write digits, a point and a sign: X-1.5",
+    4: "write it without its sign",
+    11: "split it into shorter lines",
+    21: "split it into two lines",
+    22: "write F with the first motion, such as G1 X1 F600, in G93 with each",
+    24: "split it into two lines",
+    25: "leave one out",
+    26: "add the axes, such as X1",
+    27: "number fewer lines, or none",
+    28: "add what it needs: P to G4, L and P to G10, K to G33, R and Z to a cycle, S to G96",
+    29: "P1 to P6 are G54 to G59, P0 is the one in force",
+    30: "write G53 G0 or G53 G1",
+    31: "write G0 or G1 before the axes",
+    32: "add the end of the arc: X or Y in G17, X or Z in G18, Y or Z in G19",
+    33: "an arc ends as far from its center as it begins, a hole below its R, a probe moves",
+    34: "write a longer R, or the center as I and J",
+    35: "add the center as I and J, or R",
+    36: "leave it out, or add its command",
+    37: "write Z and no other axis",
+    38: "write a tool of the table, T1 to T255",
+    42: "write M3 S1000 before it",
+    47: "measure the tool first, with $TPW, or write its length with G43.1",
+}
 # By the command in tenths, or a range of them: error of a firmware, of the first one that it has not, norm,
 # and what to do.
 ADVICE: tuple[tuple[str, range, int, str, str], ...] = (
@@ -38,6 +66,7 @@ ADVICE: tuple[tuple[str, range, int, str, str], ...] = (
 )
 LETTER_ERRORS = {"D": 36, "E": 36, "U": 20, "V": 20, "W": 20}
 OTHERWISE = "of no norm that Passo follows", "leave it out, or write what it means"
+TOGETHER = "each word is taken, but not beside the others"
 LETTERS = {
     "D": "NIST: a tool's diameter, with G41 or G42",
     "E": "RepRap: for 3D printers",
@@ -47,13 +76,20 @@ LETTERS = {
 }
 
 
-def explain(error: GcodeError, words: Sequence[Word], settings: GcodeSettings) -> str:
-    """The error of a line with the word that it is about, where that is known."""
+def explain(
+    error: GcodeError, words: Sequence[Word], settings: GcodeSettings, unread: str = ""
+) -> str:
+    """The error of a line with the word that it is about, where that is known, and what to write instead.
+
+    `unread`: what follows the words and is none.
+    """
     axes = settings.axis_letters
     if error.number == NO_PORT:
         return f"{error}: {_ports(settings)}"
     if error.number == UNUSED and (word := next((word for word in words if word.letter == "E"), None)):
         return f"{error}: {word} ({LETTERS['E']})"
+    if error.number in INSTEAD:
+        return f"{error}: {_place(error, words, settings, unread)}{INSTEAD[error.number]}"
     if error.number not in NOT_TAKEN:
         return str(error)
     for word in words:
@@ -64,12 +100,27 @@ def explain(error: GcodeError, words: Sequence[Word], settings: GcodeSettings) -
         if word.letter in "GM" and not _is_taken(word, settings):
             norm, advice = _advice(word)
             return f"{error}: {word} ({norm}): {advice}"
-    return str(error)
+    return f"{error}: {TOGETHER}"
 
 
 def explain_text(error: GcodeError, text: str, settings: GcodeSettings) -> str:
     """The same for a line as text."""
-    return explain(error, words_of(text), settings)
+    return explain(error, words_of(text), settings, unread_of(text))
+
+
+def _place(error: GcodeError, words: Sequence[Word], settings: GcodeSettings, unread: str) -> str:
+    """The word that makes the error, if one does."""
+    wrong = _wrong_word(error, words, settings) if error.number in AT_WORD else None
+    place = wrong or (unread if error.number in UNREAD else "")
+    return f"{place}: " if place else ""
+
+
+def _wrong_word(error: GcodeError, words: Sequence[Word], settings: GcodeSettings) -> Word | None:
+    """The last of the first words that have the same error without the others."""
+    for count, word in enumerate(words, 1):
+        if _error_of("".join(map(str, words[:count])), settings) == error.number:
+            return word
+    return None
 
 
 def _ports(settings: GcodeSettings) -> str:
@@ -81,11 +132,16 @@ def _ports(settings: GcodeSettings) -> str:
 
 
 def _is_taken(word: Word, settings: GcodeSettings) -> bool:
+    return _error_of(str(word), settings) not in NOT_TAKEN
+
+
+def _error_of(line: str, settings: GcodeSettings) -> int:
+    """Of a line alone; 0: none."""
     try:
-        Gcode(settings).execute(str(word))
+        Gcode(settings).execute(line)
     except GcodeError as error:
-        return error.number not in NOT_TAKEN
-    return True
+        return error.number
+    return 0
 
 
 def _advice(word: Word) -> tuple[str, str]:

@@ -4,10 +4,13 @@
 "use strict";
 
 class Advice {
-    // `isTaken(word)`: whether the interpreter has a command or word; `inputs`: number of those of M66.
-    constructor(rules, { letters, inputs, power }, isTaken) {
-        Object.assign(this, { rules, letters, inputs, power, isTaken });
+    // `errorOf(line)`: of a line alone, or 0; `inputs`: number of those of M66.
+    constructor(rules, { letters, inputs, power }, errorOf) {
+        Object.assign(this, { rules, letters, inputs, power, errorOf });
     }
+
+    // Whether the interpreter has a command or word.
+    isTaken(word) { return !this.rules.not_taken.includes(this.errorOf(word)); }
 
     // Whether a program has what only expanded ones may have.
     static needsExpanding(text, { expanded }) {
@@ -28,12 +31,30 @@ class Advice {
         });
     }
 
+    // Where the words of a line end before it does: the next characters, if they can be shown.
+    static unread(bare) {
+        const [words] = /^\/?(?:[a-z][-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))*/.exec(bare);
+        const rest = bare.slice(words.length).slice(0, 8).toUpperCase();
+        return /^[!-~]+$/.test(rest) ? rest : "";
+    }
+
+    // The last of the first words that have the same error without the others.
+    wrongWord(number, words) {
+        const texts = words.map(({ text }) => text);
+        return texts.find((_, at) => this.errorOf(texts.slice(0, at + 1).join("")) === number);
+    }
+
     // An error of a line with the word that it is about, where that is known.
     explain(number, error, line) {
-        const { rules, letters } = this, words = Advice.words(Advice.bare(line));
+        const { rules, letters } = this, bare = Advice.bare(line), words = Advice.words(bare);
         if (number === rules.no_port) return `${error}: ${this.ports}`;
         const printer = words.find(({ letter }) => letter === "E");
         if (number === rules.unused && printer) return `${error}: ${printer.text} (${rules.letters.E})`;
+        if (number in rules.instead) {
+            const wrong = rules.at_word.includes(number) && this.wrongWord(number, words);
+            const place = wrong || (rules.unread.includes(number) && Advice.unread(bare));
+            return `${error}: ${place ? `${place}: ` : ""}${rules.instead[number]}`;
+        }
         if (!rules.not_taken.includes(number)) return error;
         for (const { letter, code, text } of words) {
             if (rules.axes.includes(letter) && !letters.includes(letter)) return `${error}: ${text}: the machine has the axes ${[...letters].join(" ")}`;
@@ -44,7 +65,7 @@ class Advice {
                 return `${error}: ${text} (${norm}): ${advice}`;
             }
         }
-        return error;
+        return `${error}: ${rules.together}`;
     }
 
     get ports() {

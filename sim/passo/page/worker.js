@@ -64,10 +64,10 @@ class Core {
     // What is wrong with the lines of programs, a sentence each.
     refusals(programs, machine) {
         const count = this.c.refused(), told = this.said().split("\n").filter(Boolean), more = count - told.length;
-        const advice = new Advice(this.rules, machine, word => {
-            const bytes = encoded(word);
+        const advice = new Advice(this.rules, machine, line => {
+            const bytes = encoded(line);
             this.put(bytes, this.c.room(bytes.length));
-            return !this.rules.not_taken.includes(this.c.tries());
+            return this.c.tries();
         });
         const wrong = told.map(line => {
             const [, file, number, error, code] = /^(\d+):(\d+): ((?:error:(\d+))?.*)/.exec(line), program = programs[file];
