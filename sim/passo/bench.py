@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Speed of the engines and the link, measured and written to build/bench.json."""
+"""Speed of the engines and the link, measured in processor time and written to build/bench.json."""
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
@@ -36,14 +37,16 @@ class Measurement:
     engine: Callable[[], Engine]
 
     def clocks_per_second(self) -> float:
-        """Clocks per second of real time during the motion, including SPI frames and pin recording."""
+        """Clocks per second of the processor for the motion, including SPI frames and pin recording."""
         steps = tuple(int(speed * self.seconds) for speed in self.steps_per_second)
         move = MoveInTime(steps, "linear", self.seconds, Fraction(0))
         file = MoveFile(Path(self.name), CLOCK_HZ, PinTiming(), (move,))
         with self.engine() as engine:
+            began = time.process_time()
             run = execute(file, plan_file(file, PARAMETERS), engine)
+            seconds = time.process_time() - began
         assert not run.problems(), run.problems()
-        return run.clocks / run.seconds
+        return run.clocks / seconds
 
 
 def _rtl() -> Engine:

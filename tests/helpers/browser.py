@@ -109,8 +109,8 @@ class Browser:
         code, text = KEYS[key]
         for kind in ("keyDown", "keyUp"):
             self._call(
-                "Input.dispatchKeyEvent",
-                type=kind, key=key, code=key, windowsVirtualKeyCode=code, modifiers=2 if ctrl else 0, text=text,
+                "Input.dispatchKeyEvent", type=kind, key=key, code=key, windowsVirtualKeyCode=code, text=text,
+                modifiers=2 if ctrl else 0,
             )  # fmt: skip
 
     @contextmanager

@@ -76,9 +76,7 @@ LETTERS = {
 }
 
 
-def explain(
-    error: GcodeError, words: Sequence[Word], settings: GcodeSettings, unread: str = ""
-) -> str:
+def explain(error: GcodeError, words: Sequence[Word], settings: GcodeSettings, unread: str = "") -> str:
     """The error of a line with the word that it is about, where that is known, and what to write instead.
 
     `unread`: what follows the words and is none.
