@@ -271,6 +271,56 @@ def test_keys(opened: Browser | Firefox) -> None:
     assert opened.value(VERDICT).startswith("canceled")
 
 
+WINDOW = "[passo.view.min, passo.view.max].map(clock => Math.round(100 * clock / passo.motion.clocks))"
+
+
+def test_charts_by_keys(opened: Browser | Firefox) -> None:
+    """Zoom, move, all of it; in a text they are characters."""
+    verdict_of(opened, "G1 F600 X3")
+    opened.value("(passo.view.set(0, passo.motion.clocks), document.activeElement.blur())")
+    for key, window in (("+", [25, 75]), ("ArrowRight", [38, 88]), ("ArrowLeft", [25, 75]), ("-", [0, 100])):
+        opened.press(key)
+        assert opened.value(WINDOW) == pytest.approx(window, abs=1)
+    opened.press("+")
+    opened.press("0")
+    assert opened.value(WINDOW)[0] <= 0 and opened.value(WINDOW)[1] >= 100
+    opened.value("document.getElementById('lines').focus()")
+    opened.press("0")
+    assert opened.value("web.text").count("0") == 3 and opened.value(WINDOW)[0] <= 0
+
+
+def test_charts_by_fingers(browser: Browser) -> None:
+    """One moves them, two zoom."""
+    verdict_of(browser, "G1 F600 X3")
+    browser.wait("passo.view.isDrawn")
+    browser.value("passo.view.set(0.25 * passo.motion.clocks, 0.75 * passo.motion.clocks)")
+    browser.touch("#speed .u-over", [0.8], [0.7], [0.6])
+    assert browser.value(WINDOW) == pytest.approx([35, 85], abs=1)
+    browser.value("passo.view.set(0, passo.motion.clocks)")
+    browser.touch("#speed .u-over", [0.4, 0.6], [0.3, 0.7], [0.2, 0.8])
+    begin, end = browser.value(WINDOW)
+    assert end - begin == pytest.approx(33, abs=3) and begin + end == pytest.approx(100, abs=4)
+
+
+@pytest.mark.parametrize("name", ["a.nc", "a.ngc", "a.gcode", "a.tap", "a.toml"])
+def test_a_file_is_opened(browser: Browser, name: str) -> None:
+    """By the button; the dialog offers these endings."""
+    opened_machine = name.endswith("toml")
+    text = OWN if opened_machine else "G1 F600 X3"
+    assert f".{name.partition('.')[2]}" in browser.value("document.getElementById('file').accept").split(",")
+    done = browser.value("web.done")
+    browser.value(
+        "(input => { const data = new DataTransfer();"
+        f"data.items.add(new File([{json.dumps(text)}], {json.dumps(name)})); input.files = data.files;"
+        "input.dispatchEvent(new Event('change')); })(document.getElementById('file'))"
+    )
+    browser.wait(f"web.done > {done}")
+    if opened_machine:
+        assert browser.value("web.machine.profile") == "cosine"
+    else:
+        assert browser.value("passo.motion.axes[0].rises.length") == 240
+
+
 AXE = paths.root / ".venv" / "axe" / "node_modules" / "axe-core" / "axe.min.js"
 FOUND = "axe.run().then(found => found.violations.map(own => [own.help, own.nodes.map(node => node.html)]))"
 
