@@ -23,6 +23,7 @@ from passo.web import EXAMPLE, build
 from benchmarks.page import SECONDS_MOST, measure, play
 from tests.helpers.browser import Browser
 from tests.helpers.firefox import Firefox
+from tests.helpers.shown_commands import BLOCKS, TUTORIAL
 
 MOVES = (
     ([6400, 3840, -2560], "cosine", "total_time={} ramp_time={}", ("0.4", "0.2")),
@@ -319,6 +320,36 @@ def test_a_file_is_opened(browser: Browser, name: str) -> None:
         assert browser.value("web.machine.profile") == "cosine"
     else:
         assert browser.value("passo.motion.axes[0].rises.length") == 240
+
+
+def drop(opened: Browser | Firefox, text: str, name: str) -> None:
+    opened.value(
+        f"(() => {{ const data = new DataTransfer();"
+        f"data.items.add(new File([{json.dumps(text)}], {json.dumps(name)}));"
+        "dispatchEvent(new DragEvent('drop', {dataTransfer: data})); })()"
+    )
+
+
+TOLD = "document.getElementById('told').textContent"
+
+
+def test_a_move_file_is_dropped(opened: Browser | Firefox) -> None:
+    """That of the tutorial: as lines, at its clock; what the page has not is said."""
+    (text,) = (own for kind, own in BLOCKS.findall(TUTORIAL.read_text()) if kind == "toml")
+    done = opened.value("web.done")
+    drop(opened, text, "moves.toml")
+    opened.wait(f"web.done > {done}")
+    assert opened.value(f"[{VERDICT}, web.language, passo.motion.hz]") == ["done", "moves", 16_000_000]
+    assert opened.value("passo.motion.axes.map(axis => axis.rises.length)") == [12800, 7680, 5120]
+    assert opened.value("web.text").startswith("move steps=6400,3840,-2560 profile=cosine total_time=0.4 ")
+    opened.wait(f"{TOLD} === 'moves.toml: without its [pins]'")
+    drop(opened, text.replace("16_000_000", "20_000_000"), "other.toml")
+    opened.wait(f"{TOLD}.startsWith('other.toml: clock_hz: the page has 16,000,000')")
+    drop(opened, (paths.examples / "homing.toml").read_text(), "homing.toml")
+    opened.wait(f"{TOLD}.includes('passo run plays it')")
+    drop(opened, text.replace("steps = [6400", "steps = ]6400"), "bad.toml")
+    opened.wait(f"{TOLD}.startsWith('bad.toml: ')")
+    assert opened.value("web.done") == done + 1
 
 
 AXE = paths.root / ".venv" / "axe" / "node_modules" / "axe-core" / "axe.min.js"

@@ -17,6 +17,18 @@ function hasOnlySubroutines({ name, text }) {
     return own;
 }
 
+const MOVE_FILE = /^\s*\[\[\s*move\s*\]\]/m;
+const OF_MOVE_FILE = ["clock_hz", "pins", "move"];  // that the page knows
+
+// A move file as lines of the console, with its clock; throws for what they do not say.
+function linesOfMoves(text) {
+    const table = Toml.read(text), other = [...table.keys()].find(key => !OF_MOVE_FILE.includes(key));
+    if (other !== undefined) throw new BadValue(`${other}: the page has no machines in move files: passo run plays it`);
+    const shown = value => (Array.isArray(value) ? value.map(shown).join(",") : value instanceof Written ? value.text : String(value).replaceAll(" ", ""));
+    const lines = table.get("move").map(move => ["move", ...[...move].map(([key, value]) => `${key}=${shown(value)}`)].join(" "));
+    return { lines: lines.join("\n"), hz: Number(table.get("clock_hz")), pins: table.has("pins") };
+}
+
 // Files in the order of their names, with those marked that play.
 function inTurn(files) {
     const sorted = [...files].sort((one, other) => (one.name < other.name ? -1 : 1));
