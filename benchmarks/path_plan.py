@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from passo.build import Parameters
+from passo.native import planner
 from passo.path import Path, PathSettings
 from passo.path_rounding import Line
 
@@ -27,10 +28,16 @@ class Planned:
 
 
 def plan(
-    lines: Sequence[Line], settings: PathSettings, look_ahead: int, parameters: Parameters | None = None
+    lines: Sequence[Line],
+    settings: PathSettings,
+    look_ahead: int,
+    parameters: Parameters | None = None,
+    pace: tuple[int, int, int] | None = None,
 ) -> Planned:
-    """Plan a path as one motion."""
+    """Plan a path as one motion; `pace` are the arguments of passo_path_pace()."""
     path = Path(settings, parameters or Parameters(), look_ahead)
+    if pace:
+        planner().passo_path_pace(path.c, *pace)
     made = Planned(path, [], [], [])
 
     def take() -> None:

@@ -55,33 +55,36 @@ module passo_tracker #(
 
   localparam AXIS_BITS = AXES > 4 ? 3 : 2;
 
-  // Words of an axis. The lower two words of the target are the fraction, 0.
-  localparam [4:0] TARGET = 5'd0;
-  localparam [4:0] POSITION = 5'd4;
-  localparam [4:0] STOPPING = 5'd8;  // t
-  localparam [4:0] SCRATCH = 5'd12;
-  localparam [4:0] VELOCITY = 5'd16;  // of one tick at 16, of the next one at 18
-  localparam [4:0] SPEED = 5'd20;
-  localparam [4:0] ACCELERATION = 5'd22;
-  localparam [4:0] SPARE = 5'd24;  // speed - v
+  // Numbers of an axis, by pairs of words. Of 64 bits are y, t and the position; of the target the lower pair is 0.
+  localparam [3:0] VELOCITY = 4'd0;  // of one tick at 0, of the next one at 1
+  localparam [3:0] FASTER = 4'd2;  // w
+  localparam [3:0] SLOWER = 4'd3;
+  localparam [3:0] SPEED = 4'd4;
+  localparam [3:0] TARGET = 4'd5;
+  localparam [3:0] SCRATCH = 4'd6;  // y
+  localparam [3:0] ACCELERATION = 4'd8;
+  localparam [3:0] STOPPING = 4'd12;  // t
+  localparam [3:0] POSITION = 4'd14;
 
-  // ---- the program: four slots for each line, one word a slot ----
+  // ---- the program: two slots for each line, one word a slot ----
   //
-  //   0  speed - v, less a; copy target   1  y = target - position   2  y -= t * sign   3  y -= v * sign
-  //   4  y - a * sign; copy acceleration  5  copy speed; new v       6  new t           7  new position
+  //   0  w = v + a             4  y = target - position   8  y - w * sign            12  new t
+  //   1  v - a                 5                          9                          13
+  //   2  speed - v             6  y -= t * sign          10  reads for the host      14  new position
+  //   3  speed - w             7                         11  new v, of v, w, v - a   15
   //
   // y is d * sign, less 1 if sign is negative, so that its sign bit, as one of d, is right after additions, too.
+  // A slot reads its words; one clock later they are what is added, two clocks later, so one line, the sum is written:
+  // it can be read three slots later.
 
   reg  [          4:0] slot;
   reg  [AXIS_BITS-1:0] axis;
   reg                  odd;  // tick: which word is the new velocity
-  wire [          1:0] word = slot[1:0];
-  wire                 upper = slot[1];  // the second two words
+  wire [          3:0] line = slot[4:1];
+  wire                 word = slot[0];  // the upper one of the pair
   wire                 turn_ends = slot == 5'd31;
   wire                 tick_ends = turn_ends && axis == {AXIS_BITS{1'b1}};
-
-  reg [2:0] line_q;  // of what is added in this clock
-  reg [1:0] word_q;
+  reg  [AXIS_BITS-1:0] written;  // the axis whose sums are written: until two slots after its turn
 
   // ---- settings of the axis whose turn it is, and what has been found ----
   reg negative;  // sign
@@ -90,9 +93,10 @@ module passo_tracker #(
   reg rests;  // v is 0
   reg behind;  // d < 0
   reg near;  // d < t
-  reg close;  // d < t + v + a
+  reg close;  // d < t + w
   reg slow;  // v <= speed
-  reg slower;  // v + a <= speed
+  reg wide;  // w has more than 32 bits
+  reg slower;  // w <= speed
   reg there;  // d is 0
   reg stays_zero;  // the new v is 0
 
@@ -108,104 +112,141 @@ module passo_tracker #(
   reg        cleared_position;
 
   // ---- addresses ----
-  wire [4:0] old_velocity = {VELOCITY[4:2], odd, word[0]};
-  wire [4:0] new_velocity = {VELOCITY[4:2], ~odd, word[0]};
-  reg  [4:0] first;
-  reg  [4:0] second;
-  reg  [4:0] result;
-  reg        writes;
+  wire [3:0] old_velocity = {VELOCITY[3:1], odd};
+  wire [3:0] new_velocity = {VELOCITY[3:1], ~odd};
+  reg  [3:0] first;
+  reg  [3:0] second;
   reg        subtracts;
   reg        is_zero;  // write 0
-  reg        is_over;  // the second number has no words left, or does not count
+  reg        is_first;  // the lowest word
+  reg        no_first;  // take 0
+  reg        no_second;
 
   always @* begin
-    first     = {SCRATCH[4:2], word};
-    second    = {ACCELERATION[4:1], word[0]};
-    result    = {SCRATCH[4:2], word};
-    writes    = 1'b1;
+    first     = {SCRATCH[3:1], line[0]};
+    second    = 4'bx;
     subtracts = ~negative;
     is_zero   = 1'b0;
-    is_over   = 1'b0;
-    case (slot[4:2])
-      3'd0: begin
-        // a word less itself is 0
-        first     = {upper || clears_position ? SPARE[4:1] : SPEED[4:1], word[0]};
-        second    = {upper ? ACCELERATION[4:1] : clears_position ? SPARE[4:1] : old_velocity[4:1], word[0]};
-        result    = clears_position ? {TARGET[4:1], word[0]} : {SPARE[4:1], word[0]};
-        writes    = ~upper;
-        subtracts = 1'b1;
-      end
-      3'd1: begin
-        first     = {TARGET[4:2], word};
-        second    = {POSITION[4:2], word};
-        subtracts = 1'b1;
-      end
-      3'd2: second = {STOPPING[4:2], word};
-      3'd3: begin
-        second  = old_velocity;
-        is_over = upper;
-      end
-      3'd4: begin
-        is_over = upper;
-        writes  = 1'b0;
-      end
-      3'd5: begin
+    is_first  = ~word & ~line[0];
+    no_first  = 1'b0;
+    no_second = 1'b0;
+    case (line)
+      4'd0: begin
         first     = old_velocity;
-        result    = new_velocity;
-        writes    = upper;
-        is_over   = keeps;
-        subtracts = ~(speeds | keeps);
-        is_zero   = cleared;
+        second    = ACCELERATION;
+        subtracts = 1'b0;
       end
-      3'd6: begin
-        first     = {STOPPING[4:2], word};
-        second    = speeds ? new_velocity : old_velocity;
-        result    = {STOPPING[4:2], word};
-        is_over   = upper | keeps;
-        subtracts = ~(speeds | keeps);
+      4'd1: begin
+        first     = old_velocity;
+        second    = ACCELERATION;
+        subtracts = 1'b1;
+        is_first  = ~word;
+      end
+      4'd2: begin
+        first     = SPEED;
+        second    = old_velocity;
+        subtracts = 1'b1;
+      end
+      4'd3: begin
+        first     = SPEED;
+        second    = FASTER;
+        subtracts = 1'b1;
+        is_first  = ~word;
+      end
+      4'd4, 4'd5: begin
+        first     = TARGET;
+        second    = {POSITION[3:1], line[0]};
+        subtracts = 1'b1;
+        no_first  = ~line[0];
+      end
+      4'd6, 4'd7: second = {STOPPING[3:1], line[0]};
+      4'd8, 4'd9: begin
+        second    = FASTER;
+        no_second = line[0];
+      end
+      4'd10: begin
+        first  = 4'bx;
+        second = {POSITION[3:1], 1'b1};
+      end
+      4'd11: begin
+        first     = speeds ? FASTER : keeps ? old_velocity : SLOWER;
+        subtracts = 1'b0;
+        is_first  = ~word;
         is_zero   = cleared;
+        no_second = 1'b1;
+      end
+      4'd12, 4'd13: begin
+        first     = {STOPPING[3:1], line[0]};
+        second    = speeds ? FASTER : old_velocity;
+        subtracts = ~speeds;
+        is_zero   = cleared;
+        no_second = line[0] | keeps;
       end
       default: begin
-        first     = lands ? {TARGET[4:2], word} : {POSITION[4:2], word};
+        first     = lands ? TARGET : {POSITION[3:1], line[0]};
         second    = new_velocity;
-        result    = {POSITION[4:2], word};
-        is_over   = upper | lands;
-        subtracts = negative & ~lands;
+        subtracts = negative;
         is_zero   = cleared_position;
+        no_first  = lands & ~line[0];
+        no_second = lands | line[0];
       end
     endcase
-    // two words of the target are 0
-    if (is_zero) first = {TARGET[4:1], word[0]};
-    if (is_zero || is_over) second = {TARGET[4:1], word[0]};
-    if (is_zero) subtracts = 1'b0;
   end
 
   // ---- settings of the host: target up, target down, speed, acceleration, upper halves at odd places ----
-  // The upper half is written and copied first: a copy is whole, unless it begins with the write.
-  wire [2:0] number = bus_address[2:0];
-  reg in_targets;  // decoded one clock ahead of the strobe
-  reg in_axis;
-  reg writes_upper;
-  reg writes_lower;
-  reg [4:0] host_place;
-  wire copies = slot == 5'd2 || slot == 5'd3 || slot[4:1] == 4'd9 || slot[4:1] == 4'd10;
-  wire [ 4:0] setting = slot[4] ? {slot[2] ? SPEED[4:1] : ACCELERATION[4:1], ~word[0]} : {TARGET[4:2], 1'b1, ~word[0]};
+  // The upper half is written and copied first: a copy is whole, unless it begins with the write. They are copied where
+  // sums are not written: the target is read in slots 5 and 6, speed in 17 and 18, acceleration in 19 and 20, each word
+  // written one clock later.
+  wire [ 2:0] number = bus_address[2:0];
+  reg         in_targets;  // decoded one clock ahead of the strobe
+  reg         in_axis;
+  reg         writes_upper;
+  reg         writes_lower;
+  reg  [ 4:0] host_place;
+  reg         keeps_setting;  // the host has written since the upper half was read
+  wire        copies = line == 4'd3 || line == 4'd9 || line == 4'd10;
+  wire        copies_last = slot[2] | (slot[1] & slot[0]);
   wire [15:0] setting_word;
-  reg copies_q;
+
+  // ---- address of the sum: of one line before ----
+  reg [3:0] result;
+  reg       writes;
+
+  always @* begin
+    result = {SCRATCH[3:1], ~line[0]};
+    writes = 1'b1;
+    case (line)
+      4'd1:         result = FASTER;
+      4'd2:         result = SLOWER;
+      4'd3:         result = TARGET;
+      4'd9:         result = SPEED;
+      4'd10:        result = ACCELERATION;
+      4'd12:        result = new_velocity;
+      4'd13, 4'd14: result = {STOPPING[3:1], ~line[0]};
+      4'd15, 4'd0:  result = {POSITION[3:1], ~line[0]};
+      4'd4, 4'd11:  {result, writes} = 5'bxxxx_0;
+      default:      ;
+    endcase
+    if (copies) writes = ~(word ? keeps_setting : writes_lower);
+  end
 
   // ---- memory ----
   wire [15:0] first_word;
   wire [15:0] second_word;
-  reg  [ 7:0] result_q;
-  reg         writes_q;
-  reg         subtracts_q;
-  reg         borrows_q;  // carry into the lowest word
-  reg         begins_q;  // lowest word
-  reg         carry;
-  wire [15:0] term = second_word ^ {16{subtracts_q}};
-  wire [16:0] sum = {1'b0, first_word} + {1'b0, term} + {16'd0, begins_q ? borrows_q : carry};
-  wire [ 2:0] axis_padded = {{(3 - AXIS_BITS) {1'b0}}, axis};
-  wire        host_reads = slot[4:1] == 4'd10;  // the second word is not needed then
+  reg subtracts_q;
+  reg borrows_q;  // carry into the lowest word
+  reg begins_q;  // lowest word
+  reg no_first_q;
+  reg no_second_q;
+  reg [15:0] first_term;
+  reg [15:0] second_term;
+  reg carry;
+  wire [16:0] sum = {1'b0, first_term} + {1'b0, second_term} + {16'd0, carry};
+  wire [2:0] axis_padded = {{(3 - AXIS_BITS) {1'b0}}, axis};
+  wire [7:0] place = {
+    {(3 - AXIS_BITS) {1'b0}}, written, result, word ^ copies
+  };  // upper halves are copied first
+  wire host_reads = line == 4'd10;
 
   passo_memory #(
     .WIDTH        (16),
@@ -216,7 +257,7 @@ module passo_tracker #(
     .write        ((writes_upper & ~rst) | writes_lower),
     .write_address({host_place, writes_upper}),
     .write_data   (bus_half),
-    .read_address ({axis_padded, slot[4], slot[4] ? ~slot[2] : target_down, ~word[0]}),
+    .read_address ({axis_padded, slot[4], slot[4] ? copies_last : target_down, slot[0]}),
     .load         (1'b1),
     .read_data    (setting_word)
   );
@@ -227,10 +268,10 @@ module passo_tracker #(
     .DATA_REGISTER(0)
   ) u_first (
     .clk          (clk),
-    .write        (writes_q),
-    .write_address(result_q),
-    .write_data   (copies_q ? setting_word : sum[15:0]),
-    .read_address ({axis_padded, first}),
+    .write        (writes & ~rst),
+    .write_address(place),
+    .write_data   (copies ? setting_word : sum[15:0]),
+    .read_address ({axis_padded, first, word}),
     .load         (1'b1),
     .read_data    (first_word)
   );
@@ -241,62 +282,63 @@ module passo_tracker #(
     .DATA_REGISTER(0)
   ) u_second (
     .clk          (clk),
-    .write        (writes_q),
-    .write_address(result_q),
-    .write_data   (copies_q ? setting_word : sum[15:0]),
-    .read_address (host_reads ? {number, POSITION[4:2], 1'b1, word[0]} : {axis_padded, second}),
+    .write        (writes & ~rst),
+    .write_address(place),
+    .write_data   (copies ? setting_word : sum[15:0]),
+    .read_address ({host_reads ? number : axis_padded, second, word}),
     .load         (1'b1),
     .read_data    (second_word)
   );
 
   // ---- what is found in the sums ----
-  // Whether a sum is all 0, or in line 1 all `negative`: three bits at a time, put together one clock later.
-  wire           sign = negative & line_q == 3'd1;
+  // Whether the sums since the lowest word are all 0, or in line 4 all `negative`: three bits at a time, put together
+  // one clock later.
+  wire           sign = negative & (line == 4'd5 || line == 4'd6);
   wire    [17:0] differs = {2'd0, sum[15:0] ^ {16{sign}}};
   reg     [ 5:0] same;
-  wire           all_same = &same;
+  reg            all_same;
   reg            parity;  // of the number of steps: the position, rounded to the nearest step
   integer        k;
 
   always @(posedge clk) begin
-    slot         <= slot + 5'd1;
-    line_q       <= slot[4:2];
-    word_q       <= word;
-    result_q     <= {axis_padded, copies ? setting : result};
-    copies_q     <= copies;
-    writes_q     <= copies ? ~(word[0] ? writes_lower : writes_upper) : writes;
-    subtracts_q  <= subtracts;
-    borrows_q    <= slot[4:2] == 3'd1 ? ~negative : subtracts;
-    begins_q     <= word == 2'd0 || ((slot[4:2] == 3'd0 || slot[4:2] == 3'd5) && word == 2'd2);
-    carry        <= sum[16];
-    writes_lower <= writes_upper & ~rst;
-    writes_upper <= bus_write & (in_targets | in_axis) & ~rst;
+    slot          <= slot + 5'd1;
+    subtracts_q   <= subtracts & ~is_zero;
+    borrows_q     <= (line == 4'd4 ? ~negative : subtracts) & ~is_zero;
+    begins_q      <= is_first;
+    no_first_q    <= no_first | is_zero;
+    no_second_q   <= no_second | is_zero;
+    first_term    <= first_word & ~{16{no_first_q}};
+    second_term   <= (second_word & ~{16{no_second_q}}) ^ {16{subtracts_q}};
+    carry         <= begins_q ? borrows_q : sum[16];
+    writes_lower  <= writes_upper & ~rst;
+    keeps_setting <= writes_lower;
+    writes_upper  <= bus_write & (in_targets | in_axis) & ~rst;
     if (bus_write)
       host_place <= in_axis ? {bus_address[5:3], 1'b1, number[0]} : {number, 1'b0, bus_address[3]};
     if (turn_ends) axis <= axis + 1'b1;
+    if (slot == 5'd1) written <= axis;
     if (tick_ends) odd <= ~odd;
 
-    if (line_q == 3'd0) begin
-      slow   <= word_q[1] ? slow : sum[16];
-      slower <= sum[16] & slow;
-    end
-    if (line_q == 3'd1) begin
-      behind <= sum[15] ^ negative;
-      if (word_q == 2'd1) parity <= second_word[15];
-      if (word_q == 2'd2) parity <= parity ^ second_word[0];
-    end
-    if (line_q == 3'd2) near <= sum[15] ^ negative;
-    if (line_q == 3'd4) close <= sum[15] ^ negative;
+    // in the line after that of the sum; the upper word is the last one
+    if (line == 4'd1) wide <= sum[16];
+    if (line == 4'd3) slow <= sum[16];
+    if (line == 4'd4) slower <= sum[16] & ~wide;
+    if (line == 4'd6) behind <= sum[15] ^ negative;
+    if (line == 4'd8) near <= sum[15] ^ negative;
+    if (line == 4'd10) close <= sum[15] ^ negative;
+    if (line == 4'd5) parity <= second_term[15];
+    if (slot == 5'd12) parity <= parity ^ second_term[0];
+    if (slot == 5'd31) parity <= parity ^ sum[15];
     for (k = 0; k < 6; k = k + 1) same[k] <= differs[k*3+:3] == 3'd0;
-    if (slot >= 5'd6 && slot <= 5'd9) there <= all_same & (there | slot == 5'd6);
-    if (slot == 5'd24 || slot == 5'd25) stays_zero <= all_same & (stays_zero | ~slot[0]);
-    if (line_q == 3'd7 && word_q == 2'd1) parity <= parity ^ sum[15];
+    all_same <= &same & (all_same | (slot[0] & ~slot[2]));  // begins in slots 11 and 25
+    if (slot == 5'd15) there <= all_same & ~cleared_position;
+    if (slot == 5'd27) stays_zero <= all_same;
 
     if (rst) begin
-      slot     <= 5'd0;
-      axis     <= {AXIS_BITS{1'b0}};
-      odd      <= 1'b0;
-      writes_q <= 1'b0;
+      slot    <= 5'd1;  // nothing is over
+      axis    <= {AXIS_BITS{1'b0}};
+      odd     <= 1'b0;
+      written <= {AXIS_BITS{1'b0}};
     end
   end
 
@@ -326,12 +368,13 @@ module passo_tracker #(
     end
   end
 
+  wire    turn_over = slot == 5'd0;  // the sum of the lowest whole step of the position
   reg     write_enable;
   reg     read_state;
   integer j;
 
   always @(posedge clk) begin
-    // settings of a turn; before, the sign is still needed for the last words of the turn before
+    // settings of a turn: those of the one before are needed until it is over
     if (slot == 5'd1) begin
       negative         <= this_sign;
       rests            <= ~this_turns;
@@ -342,14 +385,14 @@ module passo_tracker #(
     end
     step_made <= {AXES{1'b0}};
     for (j = 0; j < AXES; j = j + 1) begin
-      if (turn_ends && axis == j[AXIS_BITS-1:0]) begin
-        step_made[j] <= (parity ^ sum[0]) & ~clearing;
+      if (turn_over && written == j[AXIS_BITS-1:0]) begin
+        step_made[j] <= (parity ^ sum[0]) & ~(clearing | cleared);
         signs[j]     <= negative ^ (rests & behind & ~brakes);
         turns[j]     <= ~stays_zero;
         at_target[j] <= there;
       end
     end
-    if (turn_ends) step_down <= negative;
+    if (turn_over) step_down <= negative;
     moves <= turns | (enabled & ~at_target & {AXES{~brake}});
 
     if (write_enable) enabled <= bus_bits;

@@ -240,3 +240,45 @@ def test_a_late_host_slows_along_the_points() -> None:
         )
         finish(driver, engine)
         assert driver.positions()[:3] == positions
+
+
+def test_points_exactly_at_the_limit_of_speed_pass() -> None:
+    """However their times are rounded."""
+    jump = replace(SETTINGS, axes=(replace(AXIS, jump=500),) * 3)
+    for period in (1 / 3000, 1 / 700, 1 / 130):
+        k = np.arange(1, 40)
+        with model_engine(CORE, CLOCK_HZ) as engine:
+            x = 200 * period * k
+            assert Follow(driver_at(engine), k * period, np.stack([x, 0 * x, 0 * x], axis=1), jump).error == 0
+
+
+@pytest.mark.parametrize(("clocks", "passes"), [(2**31 - 2, True), (2**31, False)])
+def test_the_longest_interval(clocks: int, passes: bool) -> None:
+    """Less than 2^31 clocks, as the message says; clocks are rounded to even ones."""
+    with model_engine(CORE, CLOCK_HZ) as engine:
+        follow = Follow(driver_at(engine), [clocks / CLOCK_HZ], [[0.5, 0, 0]])
+        assert (follow.error == 0) == passes
+        assert passes or follow.refusal == ("LONG", 0, 0)
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_the_axis_or_motor_that_is_out_of_range_is_named(axis: int) -> None:
+    """A target beyond all numbers is that of an axis, one with too many steps that of a motor."""
+    place = [0.0, 0.0, 0.0]
+    with model_engine(CORE, CLOCK_HZ) as engine:
+        driver = driver_at(engine)
+        place[axis] = 4e8
+        assert Follow(driver, [100.0], [place]).refusal == ("FAR", 0, axis)
+        fast = replace(SETTINGS, axes=(PathAxis(2**20, 2**31, 1, jump=2**31),) * 3)
+        place[axis] = 2100.0
+        assert Follow(driver, [100.0], [place], fast).refusal == ("FAR", 0, 3 + axis)
+
+
+def test_the_limits_of_mixed_motors_are_no_others() -> None:
+    """A motor that moves one axis has those of the axis."""
+    slow = replace(COREXY, motors=Motors(COREXY.motors.rows, PathAxis(0, 5, 0)))
+    with model_engine(CORE, CLOCK_HZ) as engine:
+        driver = driver_at(engine)
+        assert Follow(driver, [0.1], [[0, 0, 0.8]], slow).error == 0  # 8 mm/s
+        finish(driver, engine)
+        assert Follow(driver, [0.1], [[0.8, 0, 0.8]], slow).refusal == ("SPEED", 0, 3)

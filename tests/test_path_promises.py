@@ -5,6 +5,7 @@ import pytest
 from passo.build import Parameters
 from passo.native import planner
 from passo.path import Path, PathAxis, PathSettings
+from passo.plan import PlanError
 
 FINE = 10_000  # steps/mm
 TOLERANCE = 0.002  # mm
@@ -53,3 +54,26 @@ def test_a_long_line_is_no_farther_off_than_the_tolerance(off: float, lines: int
     path.add((10.02, off * TOLERANCE), 10)
     path.end()
     assert len(list(iter(path.next_line, None))) == lines
+
+
+def test_a_line_that_is_refused_leaves_a_dwell_as_it_was() -> None:
+    """It is not made twice, although the line would have been a part of the one before."""
+    path = Path(SETTINGS, Parameters())
+    path.add((1, 0), 10)
+    planner().passo_path_dwell(path.c, 100 * TICK)
+    path.add((1.01, 0), 10)
+    with pytest.raises(PlanError, match="TOO_FAR"):
+        path.add((2**30, 0), 10)
+    path.add((1.01, 5), 10)
+    assert [ticks for ticks, velocity in ramps_of(path) if velocity == 0].count(100) == 1
+
+
+@pytest.mark.parametrize(("steps", "passes"), [(2**20, True), (2**20 + 1, False)])
+def test_the_finest_axis(steps: int, passes: bool) -> None:
+    """2^20 steps/mm, at any speed."""
+    settings = PathSettings((PathAxis(steps, 0.01, 1),) * 2)
+    if passes:
+        Path(settings, Parameters())
+        return
+    with pytest.raises(PlanError, match="TOO_FAST"):
+        Path(settings, Parameters())

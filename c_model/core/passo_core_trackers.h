@@ -38,6 +38,7 @@ struct passo_tracker_join {
 struct passo_tracker_turn {
 	bool negative, target_down, brakes, rests, cleared, cleared_position;
 	bool slow, slower, behind, near, close, there;
+	uint32_t acceleration;
 };
 
 struct passo_trackers {

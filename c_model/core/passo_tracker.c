@@ -9,11 +9,12 @@
 #include "passo_words.h"
 
 enum {
+	SLOT_OVER = 0, /* of the turn before */
 	SLOT_SETTINGS = 1,
-	SLOT_TARGET = 2,
-	SLOT_DISTANCE = 17, /* all words have been read */
-	SLOT_ACCELERATION = 18,
-	SLOT_SPEED = 20,
+	SLOT_TARGET = 5,
+	SLOT_COMPARED = 16, /* all that is compared has been read */
+	SLOT_SPEED = 17,
+	SLOT_ACCELERATION = 19,
 	SLOT_SHOWN = 21,
 	SLOT_LAST = 31
 };
@@ -28,9 +29,15 @@ static unsigned turns_of(const struct passo_channel *channel)
 	return PASSO_TRACKER_TICK(channel->axes) / PASSO_TRACKER_TURN;
 }
 
+static unsigned turn_before(const struct passo_channel *channel)
+{
+	return (channel->trackers.turn + turns_of(channel) - 1u) % turns_of(channel);
+}
+
 void passo_trackers_reset(struct passo_trackers *trackers, bool present)
 {
-	*trackers = (struct passo_trackers){.present = present, .clears = 2, .clears_position = true};
+	*trackers = (struct passo_trackers){
+	    .present = present, .slot = SLOT_SETTINGS, .clears = 2, .clears_position = true};
 }
 
 void passo_trackers_restart(struct passo_trackers *trackers, const struct passo_trackers *before)
@@ -91,9 +98,10 @@ static void compare(struct passo_tracker_turn *now, const struct passo_tracker_a
 	const uint64_t target = (uint64_t)axis->target << 32;
 	uint64_t y = target - axis->position - (negative ? 1u : 0u);
 
+	now->acceleration = axis->acceleration;
 	now->slow = axis->speed >= axis->velocity;
 	now->slower = now->slow && axis->speed - axis->velocity >= axis->acceleration;
-	now->there = target == axis->position;
+	now->there = target == axis->position && !now->cleared_position;
 	now->behind = sign_of(y) != negative;
 	y = negative ? y + axis->stopping : y - axis->stopping;
 	now->near = sign_of(y) != negative;
@@ -113,7 +121,7 @@ static void move(struct passo_trackers *trackers, struct passo_tracker_axis *axi
 	const struct passo_tracker_turn *now = &trackers->now;
 	const bool speeds = !now->brakes && !now->close && now->slower;
 	const bool keeps = !speeds && (now->rests || (!now->brakes && !now->near && now->slow));
-	const uint32_t change = keeps ? 0u : axis->acceleration;
+	const uint32_t change = keeps ? 0u : now->acceleration;
 	const uint32_t old = axis->velocity;
 	const bool was_odd = nearest_is_odd(axis->position);
 	uint32_t velocity = speeds ? old + change : old - change;
@@ -135,10 +143,12 @@ static void move(struct passo_trackers *trackers, struct passo_tracker_axis *axi
 	else
 		axis->position += now->negative ? 0u - (uint64_t)velocity : velocity;
 	axis->velocity = velocity;
-	axis->step_made = nearest_is_odd(axis->position) != was_odd && trackers->clears == 0u;
+	axis->step_made =
+	    nearest_is_odd(axis->position) != was_odd && trackers->clears == 0u && !now->cleared;
 	axis->negative = now->negative != (now->rests && now->behind && !now->brakes);
 	axis->at_target = now->there;
 	trackers->step_down = axis->step_made && now->negative;
+	trackers->now = (struct passo_tracker_turn){0};
 }
 
 /* A clock of the turn of an axis; `written`: the host writes a setting in this clock. */
@@ -155,7 +165,7 @@ static void clock_turn(
 		if (!written)
 			axis->target = axis->host.target[trackers->now.target_down ? 1 : 0];
 		break;
-	case SLOT_DISTANCE:
+	case SLOT_COMPARED:
 		compare(&trackers->now, axis);
 		break;
 	case SLOT_ACCELERATION:
@@ -165,10 +175,6 @@ static void clock_turn(
 	case SLOT_SPEED:
 		if (!written)
 			axis->speed = axis->host.speed;
-		break;
-	case SLOT_LAST:
-		move(trackers, axis);
-		trackers->now = (struct passo_tracker_turn){0};
 		break;
 	default:
 		break;
@@ -195,7 +201,7 @@ void passo_tracker_clock(struct passo_channel *channel, const struct passo_bus *
 {
 	struct passo_trackers *trackers = &channel->trackers;
 	const uint8_t address = (uint8_t)bus->address;
-	const unsigned turn = trackers->turn;
+	const unsigned turn = trackers->turn, before = turn_before(channel);
 	const bool turn_ends = trackers->slot == SLOT_LAST;
 	const bool tick_ends = turn_ends && turn == turns_of(channel) - 1u;
 	const bool shows = trackers->slot == SLOT_SHOWN && !bus->read;
@@ -210,6 +216,8 @@ void passo_tracker_clock(struct passo_channel *channel, const struct passo_bus *
 		if (shows)
 			axis->shown = (uint32_t)(axis->position >> 32);
 	}
+	if (trackers->slot == SLOT_OVER && before < channel->axes)
+		move(trackers, &trackers->axis[before]);
 	if (turn < channel->axes)
 		clock_turn(trackers, turn, word != NULL, wires);
 	if (trackers->writes_enable)
@@ -289,8 +297,10 @@ void passo_trackers_skip(struct passo_channel *channel, uint64_t clocks)
 	trackers->slot = (uint8_t)((now + clocks) % PASSO_TRACKER_TURN);
 	trackers->turn = (uint8_t)((now + clocks) % tick / PASSO_TRACKER_TURN);
 	trackers->now = (struct passo_tracker_turn){0};
-	if (trackers->turn < channel->axes && trackers->slot > SLOT_SETTINGS)
-		begin_turn(trackers, trackers->turn, false, trackers->hold);
-	if (trackers->turn < channel->axes && trackers->slot > SLOT_DISTANCE)
-		compare(&trackers->now, &trackers->axis[trackers->turn]);
+	const unsigned axis = trackers->slot == SLOT_OVER ? turn_before(channel) : trackers->turn;
+	if (axis >= channel->axes || trackers->slot == SLOT_SETTINGS)
+		return;
+	begin_turn(trackers, axis, false, trackers->hold);
+	if (trackers->slot > SLOT_COMPARED || trackers->slot == SLOT_OVER)
+		compare(&trackers->now, &trackers->axis[axis]);
 }

@@ -30,7 +30,6 @@ const struct passo_path_axis *passo_path_motor_limits(
 	if (one == other)
 		return one;
 	*mixed = (struct passo_path_axis){
-	    .steps_per_mm = passo_mul_div(one->steps_per_mm, PASSO_PATH_ONE, PASSO_PATH_HALF_ROOT),
 	    .speed = along(given->speed, one->speed, other->speed),
 	    .acceleration = along(given->acceleration, one->acceleration, other->acceleration),
 	    .jerk = along(given->jerk, one->jerk, other->jerk),

@@ -34,8 +34,9 @@ TESTS = (
     *("test_driver_together", "test_driver_units", "test_driver_goto", "test_driver_homed"),
     *("test_driver_sessions", "test_driver_noise", "test_driver_square", "test_driver_frames"),
     *("test_driver_waits", "test_driver_pass", "test_endings", "test_follow", "test_gcode_lathe"),
-    *("test_driver_promises", "test_path_parts_rare", "test_path_promises"),
+    *("test_driver_promises", "test_driver_trackers", "test_path_parts_rare", "test_path_promises"),
 )
+RECORD = "test_plan_record"  # no judge: it sees that a plan has changed; for those that live in the end
 LONG = Path(__file__).with_name("c_long.py")
 MOST_FAIL = 2  # tests of a file that do not run on copies
 REACHED = BUILD / "reached"
@@ -49,7 +50,7 @@ PLAYED = "tests"  # those that reach a mutant have judged it, if there are any
 
 def tests(only: Collection[str] = ()) -> list[Path]:
     """The files, or some of them; LONG only if it is named."""
-    files = [paths.tests / f"{name}.py" for name in TESTS if not only or name in only]
+    files = [paths.tests / f"{name}.py" for name in (*TESTS, RECORD) if not only or name in only]
     return [file for file in (*files, *([LONG] if LONG.stem in only else [])) if file.exists()]
 
 
@@ -220,6 +221,10 @@ def _first(pair: tuple[float, Test]) -> float:
     return pair[0]
 
 
+def _of_record(case: str) -> bool:
+    return f"/{RECORD}.py::" in case
+
+
 class Judge:
     """Lets tests judge mutants."""
 
@@ -250,6 +255,9 @@ class Judge:
         for mutant in self.mutants:
             fate = self.fates.get(mutant.name)
             fate.tried = [case for case in fate.tried or [] if "::" not in case or self._holds(case, mutant)]
+            if _of_record(fate.killed):  # a judge may see it by now
+                fate.tried = [case for case in fate.tried if not _of_record(case)]
+                fate.killed = fate.says = ""
             if fate.killed and not self._holds(fate.killed, mutant):
                 test, fate.killed, fate.says = self.by_name.get(fate.killed.rpartition(" ")[0]), "", ""
                 if test:
@@ -258,11 +266,15 @@ class Judge:
         self.fates.save()
         return count
 
-    def play(self, mutant: CMutant, limit: float) -> None:
-        """Those that it has not survived yet, for some seconds in all."""
+    def play(self, mutant: CMutant, limit: float, record: bool = False) -> None:
+        """Those that it has not survived yet, for some seconds in all: judges, or the record."""
         fate = self.fates.get(mutant.name)
         tried = fate.tried or []
-        reaching = [test for test in self.known if mutant.name in test.reached]
+        reaching = [
+            test
+            for test in self.known
+            if mutant.name in test.reached and _of_record(test.name) == record
+        ]
         left = [test for test in reaching if test.case(mutant) not in tried]
         spent = sum(test.seconds + TEST for test in reaching if test.case(mutant) in tried)
         chosen = self.kills.chosen(mutant, left, limit - spent)
@@ -302,13 +314,15 @@ def judge(
         known = record(worker, all_mutants, files, show)
         judging = Judge(worker, known, mutants, fates, bool(only))
         show(f"C: {judging.again()} kills tried again")
-        for limit in limits:
+        rounds = [*((limit, False) for limit in limits), (limits[-1], True)]
+        for limit, on_record in rounds:
             for i, mutant in enumerate(mutants, 1):
                 if fates.get(mutant.name).lives:
-                    judging.play(mutant, limit)
+                    judging.play(mutant, limit, on_record)
                 if i % 10 == 0 or i == len(mutants):
                     fates.save()
                     living = sum(fates.get(mutant.name).lives for mutant in mutants)
-                    show(f"C: {i} of {len(mutants)} within {limit} s: {living} live")
+                    what = "the record" if on_record else f"tests of {limit} s"
+                    show(f"C: {i} of {len(mutants)}, {what}: {living} live")
     finally:
         worker.end()

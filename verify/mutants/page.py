@@ -12,6 +12,7 @@ from passo.output import write_text
 from passo.toolchain import paths
 
 from verify.mutants.c_equal import NAME as OBJECT_CODE
+from verify.mutants.c_judge import RECORD
 from verify.mutants.c_source import FOLDERS, CMutant
 from verify.mutants.fates import Fates
 from verify.mutants.netlist import Mutant
@@ -20,6 +21,7 @@ PAGE = paths.reference / "mutants.md"
 REASONS = Path(__file__).parent / "reasons.toml"
 NO_REASON = "no property covers it yet"
 JUDGES = ("pins", "motions", "frames", "registers", "proofs")  # of the RTL
+C_JUDGES = ("tests", "record")  # of C: the record only sees that a plan has changed
 
 
 @dataclass
@@ -64,6 +66,8 @@ def _judge_of(killed: str) -> str:
         return killed
     if killed.startswith("proof"):
         return "proofs"
+    if RECORD in killed:
+        return "record"
     return "tests" if ".py" in killed or "ends with" in killed else "pins"
 
 
@@ -141,11 +145,11 @@ ENDS = ("no fault", "not played", "live", "score")
 
 
 def _table(head: str, judges: Sequence[str], all_scores: Sequence[Score]) -> str:
-    """The scores by judge; of one judge, whatever its name."""
+    """The scores by judge."""
     lines = [f"| {' | '.join((head, 'mutants', *judges, *ENDS))} |"]
     lines.append("|---|" + "---:|" * (1 + len(judges) + len(ENDS)))
     for score in all_scores:
-        by = [score.killed.get(judge, 0) for judge in judges] if len(judges) > 1 else [score.dead]
+        by = (score.killed.get(judge, 0) for judge in judges)
         numbers = (score.made, *by, score.equal, score.waiting, score.live)
         lines.append(f"| `{score.module}` | {' | '.join(map(str, numbers))} | {score.shown} |")
     return "\n".join(lines)
@@ -207,7 +211,7 @@ def write(rtl: Sequence[Score], c: Sequence[Score], seed: int) -> None:
     of_rtl, _, of_c = rows.partition("### C\n")
     living_rtl, _, living_c = survivors.partition("### Of C\n")
     rtl = _kept(_merged(rtl), _read(of_rtl + living_rtl, JUDGES))
-    c = _kept(_merged(c), _read(of_c + living_c, ("tests",)))
+    c = _kept(_merged(c), _read(of_c + living_c, C_JUDGES))
     write_text(PAGE, head + BEGIN + _figures(rtl, c, seed) + END + tail)
 
 
@@ -217,11 +221,12 @@ def _figures(rtl: Sequence[Score], c: Sequence[Score], seed: int) -> str:
         equal = f"{score.equal} more are equivalent"
         return f"{score.dead:,} of {score.faults:,} ({score.share:.1%}; {equal}{waits})"
 
+    by_record = sum(score.killed.get("record", 0) for score in c)
     unlisted = sum(score.live - len(score.living) for score in (*rtl, *c))
     note = f"\n{unlisted} older survivors are not listed.\n" if unlisted else ""
     return f"""
 Seed {seed}. Mutants killed in the RTL: {of(total(rtl))}; in the C sources:
-{of(total(c))}.
+{of(total(c))}, {by_record} of them only by the record of plans.
 
 ### RTL
 
@@ -229,7 +234,7 @@ Seed {seed}. Mutants killed in the RTL: {of(total(rtl))}; in the C sources:
 
 ### C
 
-{_table("file", ("killed",), c)}
+{_table("file", C_JUDGES, c)}
 
 ## Survivors
 {note}
