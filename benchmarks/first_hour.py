@@ -60,7 +60,8 @@ COLUMNS = ("what", "goal", "measured", "met", "by")
 
 def most(what: str, goal: float, measured: float, unit: str, command: str) -> Figure:
     """A figure that is at most its goal."""
-    return Figure(what, f"at most {goal:g} {unit}", f"{measured:.3g} {unit}", measured <= goal, command)
+    shown = f"{measured:.3g}" if measured < 1000 else f"{measured:,.0f}"
+    return Figure(what, f"at most {goal:g} {unit}", f"{shown} {unit}", measured <= goal, command)
 
 
 def plays(tell: Tell, name: str, goal: float) -> Iterator[Figure]:
@@ -148,11 +149,19 @@ def write_picture(png: bytes) -> None:
     write_bytes(folder / "page.png", png)
 
 
-def written(figures: list[Figure]) -> str:
-    """The page with these figures."""
-    rows = [COLUMNS, ("---", "---", "---", "---", "---"), *(figure.row for figure in figures)]
-    text = "".join(f"| {' | '.join(row)} |\n" for row in rows)
-    return TABLE.sub(lambda found: found[1] + text + found[2], PAGE.read_text(encoding="utf-8"))
+def written(figures: list[Figure], keep: bool = False) -> str:
+    """The page with these figures; `keep`: beside its rows of others."""
+    page = PAGE.read_text(encoding="utf-8")
+    rows = [figure.row for figure in figures]
+    if keep:
+        new, what = {row[0]: row for row in rows}, [row[0] for row in rows]
+        there = [tuple(line.strip("| ").split(" | ")) for line in page.splitlines() if line.startswith("| ")]
+        old = [row for row in there[2:] if row[0] not in new]
+        # those of a command stay together
+        at = next((at for at, row in enumerate(old) if row[-1] == rows[0][-1]), len(old))
+        rows = [*old[:at], *(new[one] for one in what), *old[at:]]
+    text = "".join(f"| {' | '.join(row)} |\n" for row in (COLUMNS, ("---",) * len(COLUMNS), *rows))
+    return TABLE.sub(lambda found: found[1] + text + found[2], page)
 
 
 # In the order of the page.
@@ -188,6 +197,11 @@ def measure(
     return [Figure(**figure) for name in parts if name in kept for figure in kept[name]["figures"]]
 
 
+def known_all() -> bool:
+    """Whether the figures of all parts are kept."""
+    return KEPT.exists() and PARTS.keys() <= json.loads(KEPT.read_text()).keys()
+
+
 def measure_short(tell: Tell) -> list[Figure]:
     """Preview and page with fewer lines."""
     return [*previews(tell, True), *pages(tell, True)]
@@ -209,7 +223,7 @@ def main() -> int:
         parts = PARTS | ({"hour": lambda tell: hour_of(chosen.hour, tell)} if chosen.hour else {})
         wanted = ["hour"] if chosen.hour and not chosen.parts else chosen.parts
         figures = measure(stages(), wanted, chosen.again, parts)
-        write_text(PAGE, written(figures))
+        write_text(PAGE, written(figures, keep=not known_all()))
     rows = table("A first hour", *COLUMNS)
     for figure in figures:
         rows.add_row(*figure.row)

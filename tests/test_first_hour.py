@@ -62,6 +62,7 @@ def test_a_run_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 def test_figures_and_their_goals() -> None:
     assert most("a", 5, 4.999, "s", "c").met and most("a", 5, 5, "s", "c").met
     missed = most("a", 5, 5.001, "s", "make c")
+    assert most("a", 5, 1459, "s", "c").measured == "1,459 s"
     assert missed.row == ("a", "at most 5 s", "5 s", "**no**", "`make c`")
 
 
@@ -72,6 +73,22 @@ def test_the_page_is_written() -> None:
     assert "| a part | 2 s | 1 s | yes | `make part` |\n<!-- to here -->" in made
     assert made.partition("<!--")[0] == before.partition("<!--")[0]
     assert made.partition("<!-- to here")[2] == before.partition("<!-- to here")[2]
+
+
+def test_rows_of_other_parts_stay() -> None:
+    """Where a part is measured alone and nothing is known of the others."""
+    (first, *_) = rows = [line for line in first_hour.PAGE.read_text().splitlines() if line.startswith("| ")][
+        2:
+    ]
+    what = first.strip("| ").split(" | ")[0]
+    own = Figure(what, "5 s", "9 s", False, "`python -m benchmarks.preview`".strip("`"))
+    made = first_hour.written([own, Figure("a part", "2 s", "1 s", True, "make part")], keep=True)
+    after = [line for line in made.splitlines() if line.startswith("| ")][2:]
+    assert after[:2] == [
+        f"| {what} | 5 s | 9 s | **no** | `python -m benchmarks.preview` |",
+        "| a part | 2 s | 1 s | yes | `make part` |",
+    ]
+    assert after[2:] == rows[1:]
 
 
 def test_ratios_are_measured_with_the_same_steps(monkeypatch: pytest.MonkeyPatch) -> None:
