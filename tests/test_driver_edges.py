@@ -2,10 +2,21 @@
 """Calls of the driver at the edges of what they take: the greatest values, none at all, the wrong motion."""
 
 import pytest
+from passo.driver import Source
 from passo.native import ffi, planner
-from passo.registers import TriggerAction, TriggerSource
+from passo.registers import Shape, TriggerAction, TriggerSource
 
-from tests.helpers.driver_wire import CLOCK_HZ, Q32, Wire, by_speed, error_of, finish, open_driver, struct
+from tests.helpers.driver_wire import (
+    CLOCK_HZ,
+    Q32,
+    Wire,
+    by_speed,
+    error_of,
+    finish,
+    open_driver,
+    path,
+    struct,
+)
 from tests.test_driver_goto import go
 from tests.test_driver_home import Switch, driver_of, home, homes, machine_of, run_home
 
@@ -76,6 +87,29 @@ def test_a_change_may_be_as_late_as_can_be() -> None:
     driver.call("configure_motion", 50 * MS, 50 * MS, 0)
     driver.call("goto", go(5000, late_clocks=1 << 40))
     assert driver.c.late == 1 << 30
+
+
+def test_a_table_is_loaded_at_rest_alone() -> None:
+    """Not in a motion, not while one is under way or stopped, not behind the gate of a stream."""
+    driver = open_driver(Wire())
+    driver.call("configure_motion", MS, MS, 0)
+    load = "load_table", Shape.EASE, [n << 8 for n in range(256)]
+    driver.call("move_by_speed", by_speed([3000, 0, 0, 0], speed=20_000))
+    assert error_of(driver, *load) == "TABLE"
+    driver.call("stop")
+    driver.engine.run(10 * MS)
+    assert error_of(driver, *load) == "STOPPED"
+    driver.call("clear")
+    driver.call("goto", go(5000))
+    assert error_of(driver, *load) == "UNDER_WAY"
+    driver.call("jog_cancel")
+    finish(driver)
+    driver.stream(Source(*path(9)))
+    frames = driver.engine.frames
+    assert error_of(driver, *load) == "STREAMING" and driver.engine.frames == frames
+    finish(driver)
+    driver.call(*load)
+    assert driver.engine.frames - frames >= 5
 
 
 def test_no_place_for_an_angle() -> None:

@@ -257,6 +257,45 @@ def test_a_goto_that_waits_is_changed(driver: Driver) -> None:
     assert end(driver) == "OK" and driver.engine.counted() == ([100, 0, 0], [100, 0, 0])
 
 
+def changed(driver: Driver, frame: int, call: str, *arguments: Any) -> None:
+    """A motion that waits for its inputs and for sync is changed; its inputs are known before a frame."""
+    wire = driver.engine
+    first = wire.frames + frame
+    wire.before_frame = lambda number: wire.engine.run(2 * MS) if number == first else None
+    driver.call(call, *arguments)
+    wire.before_frame = lambda _: None
+    for _ in range(20):
+        wire.run(MS)
+        driver.poll()
+    assert wire.counted()[0] == [0, 0, 0]
+    for edge in range(300):
+        wire.engine.set("sync", edge % 2)
+        wire.run(MS)
+        driver.poll()
+    assert not driver.is_moving
+
+
+@pytest.mark.parametrize("frame", range(1, 7))
+def test_a_motion_that_waits_for_sync_does_so_while_it_is_changed(driver: Driver, frame: int) -> None:
+    """Whenever its inputs become known: no step before an edge, then it goes to the new target."""
+    blind(driver)
+    wanted = {"speed": 10_000 * Q32, "acceleration": 10**6 * Q32}
+    driver.call("wait_for_sync", True)
+    driver.call("goto", struct("goto", target=500, **wanted))
+    changed(driver, frame, "goto", struct("goto", target=100, **wanted))
+    assert driver.engine.counted() == ([100, 0, 0], [100, 0, 0])
+
+
+@pytest.mark.parametrize("frame", range(1, 7))
+def test_a_jog_that_waits_for_sync_does_so_while_it_is_cancelled(driver: Driver, frame: int) -> None:
+    """No step before an edge, nor more than a few after it."""
+    blind(driver)
+    driver.call("wait_for_sync", True)
+    driver.call("jog", struct("jog", speed=10_000 * Q32, acceleration=10**6 * Q32, steps=500))
+    changed(driver, frame, "jog_cancel")
+    assert 0 <= driver.positions()[0] == driver.engine.counted()[1][0] < 5
+
+
 @pytest.mark.parametrize("pressed", [False, True])
 def test_home_knows_its_switch_before_it_moves(driver: Driver, pressed: bool) -> None:
     """A pressed switch is left, however long the filter; it was taken for a free one."""

@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: MIT
 """Single sentences of passo.h that no other test of the driver needs."""
 
+from typing import Any
+
 import pytest
 from passo import registers as r
+from passo.build import Parameters
 from passo.driver import Driver
 from passo.native import ffi, planner
 from passo.registers import Operation
 
 from benchmarks.squaring import Gantry, begin, square
 from tests.helpers.driver_wire import CLOCK_HZ, Q32, Wire, by_speed, error_of, finish, open_driver, struct
-from tests.test_driver_sessions import PARAMETERS
 
 
 def test_no_time_at_a_pin_is_a_clock(driver: Driver) -> None:
@@ -51,6 +53,41 @@ def test_the_bound_of_racking_is_twice_the_way_to_the_slow_speed(racking: int, e
     rig.engine.close()
 
 
-def test_no_thread_is_an_error() -> None:
-    """Not a crash."""
-    assert error_of(open_driver(Wire(PARAMETERS)), "thread", ffi().NULL) == "ARGUMENT"
+NULL = ffi().NULL
+WITH_ALL = Parameters(inputs=1, outputs=1, encoders=1, trackers=1)
+POINTERS = [
+    *[(call, NULL) for call in ("arm_trigger", "read_trigger", "read_inputs", "probe", "jog", "goto")],
+    *[(call, NULL) for call in ("set_output", "configure_outputs", "read_outputs", "arm_compare")],
+    *[(call, NULL) for call in ("thread", "pass", "read_thread", "configure_tracker", "stream")],
+    *[(call, NULL) for call in ("positions", "target", "move_turn", "move_straight", "move_jerk")],
+    *[(call, 0, NULL) for call in ("configure_axis", "configure_inputs", "configure_encoder")],
+    *[(call, 0, NULL) for call in ("read_encoder", "read_tracker", "lost_steps")],
+    *[("home", NULL, 1), ("track_to", NULL, 5), ("turn_start", NULL, Q32), ("move_plan", NULL, NULL)],
+    *[("push_raster", NULL, 4, ffi().new("size_t *")), ("angle", 0, 1600, NULL), ("rpm", 1600, NULL)],
+]
+
+
+@pytest.fixture(scope="module")
+def with_all() -> Driver:
+    return open_driver(Wire(WITH_ALL))
+
+
+@pytest.mark.parametrize("call", POINTERS, ids=[name for name, *_ in POINTERS])
+def test_no_pointer_is_an_error(with_all: Driver, call: tuple[Any, ...]) -> None:
+    """Not a crash, and nothing is sent."""
+    frames = with_all.engine.frames
+    assert error_of(with_all, *call) == "ARGUMENT" and with_all.engine.frames == frames
+
+
+def test_a_motion_whose_inputs_stay_unknown_is_given_up() -> None:
+    """After 0.1 s, if they change within the filter all the time: it was not begun."""
+    engine, told, between = Wire(Parameters(inputs=1), 8_000_000), [], 60_000
+    driver = open_driver(engine)
+    driver.call("configure_filter", 65_535)
+    driver.call("move_by_speed", by_speed([100, 0, 0, 0]))
+    for change in range(16):
+        engine.engine.set("home", change % 2)
+        engine.run(between)
+        told += [error for error in [error_of(driver, "poll")] if error != "OK"]
+        assert not told or change * between > engine.clock_hz // 10
+    assert told == ["INPUTS_UNKNOWN"] and engine.counted()[0] == [0, 0, 0, 0]

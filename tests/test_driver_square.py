@@ -2,13 +2,14 @@
 """Squaring (stm32_bridge/driver/passo_square.c): each motor of an axis at its own switch."""
 
 import random
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
 import pytest
 from passo.driver import Driver
 from passo.engine import AroundEngine
+from passo.machine import Switch
 from passo.native import ffi
 from passo.random_cases import seed
 from passo.registers import (
@@ -19,11 +20,14 @@ from passo.registers import (
     CHANNEL_TRIGGER_STATE_ARMED_LSB,
     CHANNEL_TRIGGER_STATE_ARMING_LSB,
     Operation,
+    TriggerSource,
 )
 
 from benchmarks import squaring
 from benchmarks.squaring import CLOCK_HZ, Gantry, begin, gantry_of, problems, square
 from tests.helpers.driver_wire import Q32, by_speed, error_of, open_driver, struct
+from tests.test_driver_home import driver_of, home, machine_of
+from tests.test_driver_home import homes as home_array
 
 SKEWED = Gantry((900, 1200), (0, 10))
 
@@ -95,6 +99,64 @@ def test_a_switch_that_sticks(motor: int) -> None:
     """All motors leave it together, and it is not left: no racking."""
     made = square(replace(SKEWED, stuck={motor: True}))
     assert (made.error, made.skewed) == ("SWITCH_MISSED", None) and made.racking == 0
+
+
+@pytest.mark.parametrize("start", [(900, 1280, 1000), (900, 1000, 1280)])
+def test_a_motor_whose_edge_is_known_is_in_line_again(start: tuple[int, ...]) -> None:
+    """Before the next one goes away from its own: they are not further apart than the bound."""
+    gantry = Gantry(start, (0, 0, 0), racking=400)
+    assert problems(gantry, square(gantry)) == []
+
+
+@pytest.mark.parametrize("racking", [361, 400])
+def test_a_switch_that_is_not_left_within_the_bound(racking: int) -> None:
+    """Its motor goes as far as it may, to the step."""
+    made = square(Gantry((900, 900), (0, 0), racking=racking, hysteresis=500))
+    assert (made.error, made.skewed, made.racking) == ("SWITCH_LEVEL", None, racking)
+
+
+def play(driver: Driver, homes: Any, change: Callable[[list[int]], None]) -> tuple[str, int]:
+    """Home the motors of a machine whose switches change; the error, and how far they were apart."""
+    machine, error, apart = driver.engine, error_of(driver, "home", homes, 1), 0
+    begin = machine.positions[0] - machine.positions[1]
+    while error == "OK" and driver.is_moving:
+        machine.run(CLOCK_HZ // 2000)
+        change(machine.positions.tolist())
+        apart = max(apart, abs(machine.positions[0] - machine.positions[1] - begin))
+        error = error_of(driver, "poll")
+    return error, apart
+
+
+def pair(**fields: Any) -> Any:
+    """Both motors of an axis at their low limits."""
+    return home_array(home(source=TriggerSource.LIMIT_LOW, forward=3, back_off=60, pull_off=150, **fields))
+
+
+def test_another_switch_that_is_first_the_second_time() -> None:
+    """The motors leave it as they left the first one."""
+    first, second = Switch("limit_low", 0, 0), Switch("limit_low", 1, 0)
+    driver = driver_of(machine_of(first, second, start=[120, 100]))
+
+    def change(places: list[int]) -> None:
+        if second.edges and places[1] > 50:
+            first.at = 40
+
+    error, apart = play(driver, pair(racking=400), change)
+    assert error == "OK" and apart <= 400
+    assert driver.engine.positions[:2].tolist() == pytest.approx([190, 150], abs=2)
+
+
+def test_a_switch_that_is_earlier_the_second_time() -> None:
+    """Its motor is behind the line then, and the bound of the other one counts from there."""
+    first, second = Switch("limit_low", 0, 0), Switch("limit_low", 1, 0, stuck=False)
+    driver = driver_of(machine_of(first, second, start=[100, 100]))
+
+    def change(places: list[int]) -> None:
+        if places[0] - places[1] > 50:
+            first.at = 30
+
+    error, apart = play(driver, pair(racking=400), change)
+    assert error == "SWITCH_MISSED" and 390 <= apart <= 400
 
 
 def test_an_alarm_stops_all_motors_on_one_clock() -> None:

@@ -7,10 +7,13 @@ from typing import Any
 import pytest
 from passo.build import Parameters
 from passo.driver import Driver
-from passo.registers import Cause, State
+from passo.engine import model_engine
+from passo.machine import Machine, Switch
+from passo.registers import Cause, State, TriggerSource
 
-from tests.helpers.driver_wire import Q32, Wire, by_speed, error_of, open_driver, struct
+from tests.helpers.driver_wire import CLOCK_HZ, Q32, Wire, by_speed, error_of, open_driver, struct
 from tests.helpers.random_plans import SEED
+from tests.test_driver_home import driver_of, home, run_home
 
 PARAMETERS = Parameters(trackers=1, inputs=1)
 SPEED, ACCELERATION = 50_000, 5_000_000  # steps/s, steps/s^2
@@ -32,7 +35,7 @@ def machine() -> tuple[Driver, Wire]:
     return driver, wire
 
 
-def finish(driver: Driver, wire: Wire) -> None:
+def finish(driver: Driver, wire: Wire | Machine) -> None:
     """Poll until the path has ended; with trackers a poll may be two frames."""
     end = wire.clock + 2 * wire.clock_hz
     while driver.is_moving:
@@ -48,7 +51,7 @@ def reading(driver: Driver, axis: int = 0) -> Any:
     return read
 
 
-def settle(driver: Driver, wire: Wire, axis: int = 0) -> None:
+def settle(driver: Driver, wire: Wire | Machine, axis: int = 0) -> None:
     """Wait until it is at its target."""
     for _ in range(1000):
         wire.run(wire.clock_hz // 10_000)
@@ -146,6 +149,26 @@ def test_a_new_session_finds_no_tracker_that_moves() -> None:
     other.call("move_by_speed", by_speed([100, 0, 0, 0]))
     finish(other, wire)
     assert wire.counted()[1][0] == rested + 100
+
+
+@pytest.mark.parametrize("target", [100, -30])
+def test_a_switch_is_found_beside_a_tracker(target: int) -> None:
+    """The place of an edge is that of the path, as all positions are: a home ends where it says."""
+    rig = Machine(model_engine(PARAMETERS, CLOCK_HZ), [Switch("home", 0, -700)])
+    driver = driver_of(rig)
+    one = track()
+    driver.call("configure_tracker", one)
+    driver.call("track_to", one, target)
+    settle(driver, rig)
+    assert run_home(driver, home(pull_off=50, position=40)) == "OK"
+    assert driver.positions()[0] == 90 and reading(driver).position == target
+    assert rig.positions[0] == pytest.approx(-650, abs=1)
+    driver.call("arm_trigger", struct("trigger_config", source=TriggerSource.HOME))
+    driver.call("move_by_speed", by_speed([-400, 0, 0, 0], speed=5000))
+    finish(driver, rig)
+    report = struct("trigger_report")
+    driver.call("read_trigger", report)
+    assert report.fired and report.positions[0] == pytest.approx(40, abs=2)
 
 
 def test_a_switch_stops_a_tracker() -> None:

@@ -261,6 +261,32 @@ def test_no_change_of_a_speed_is_steep(after: int, rpm: int) -> None:
     assert driver.engine.steepest() <= 20_000 * 1.05
 
 
+def test_a_stop_that_comes_with_the_first_step_is_not_steep() -> None:
+    """At its sync edge the shaft begins with a jump, which was not there yet: the ramp is long enough."""
+    wire, acceleration, minimum = Trace(), 10_000_000, 8000
+    driver = open_driver(wire)
+    driver.call("configure_motion", 50 * MS, 50 * MS, 0)
+    fields = {"top_rpm": 60_000 * Q32, "minimum_rpm": minimum * Q32, "acceleration": acceleration * Q32}
+    driver.call("wait_for_sync", True)
+    driver.call("turn_start", struct("turning", axis=0, steps_per_turn=60, **fields), 40_000 * Q32)
+    pushed = wire.frames + 2
+
+    def begin(number: int) -> None:
+        if number == pushed:
+            wire.engine.set("sync", 1)
+            wire.engine.run(MS * 4 // 5)
+
+    wire.before_frame = begin
+    driver.call("turn_stop")
+    finish(driver)
+    wire.collect()
+    times = np.diff(np.array(wire.clocks) / CLOCK_HZ)
+    speeds = 1 / times
+    assert speeds.max() > 1.5 * minimum
+    slopes = np.diff(speeds) * 2 / (times[1:] + times[:-1])
+    assert np.abs(slopes).max() <= 1.1 * acceleration
+
+
 @pytest.mark.parametrize("difference", range(-60, 61, 12))
 def test_the_ramp_to_a_speed_nearby_is_long_enough(wire: Wire, difference: int) -> None:
     """From the speed that the shaft has, which still rises, to one just above or below it."""

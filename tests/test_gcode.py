@@ -3,6 +3,7 @@
 
 import random
 from fractions import Fraction
+from math import floor
 from typing import Any
 
 import pytest
@@ -38,7 +39,10 @@ def at(gcode: Gcode) -> tuple[float, ...]:
 
 # --------------------------------------------------------------------------------------------- numbers
 
-NUMBERS = ["0", "-0", "+5", ".5", "-.25", "3.", "007", "1.0000004", "1.0000005", "-1.9999996", "999999999"]
+NUMBERS = [
+    *("0", "-0", "+5", ".5", "-.25", "3.", "007", "1.0000004", "1.0000005", "-1.0000005", "-1.9999996"),
+    *("0.9999995", "0.00000049999", "999999999"),
+]
 
 
 @pytest.mark.parametrize("text", NUMBERS)
@@ -47,9 +51,8 @@ def test_numbers_are_exact_to_a_nanometre(text: str) -> None:
     gcode = Gcode()
     run(gcode, f"G0X{text}")
     exact = Fraction(text.rstrip(".")) * NANOMETERS
-    assert abs(gcode.position[0] - exact) <= Fraction(1, 2)
-    if exact.denominator == 1:
-        assert gcode.position[0] == exact
+    assert abs(gcode.position[0]) == floor(abs(exact) + Fraction(1, 2))
+    assert gcode.position[0] * exact >= 0
 
 
 def test_inches_are_exact() -> None:
@@ -117,6 +120,20 @@ def test_long_comments_do_not_count() -> None:
     assert run(Gcode(), words + "(" + "x" * 500 + ")") is not None
     with pytest.raises(GcodeError, match="error:11"):
         stripped((words + "0").encode())
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("(MSG,tool 5)", "tool 5"), ("( m sg, Tool  5 ) G0", "Tool  5 "), ("G0 (MSG,a;b", "a;b"),
+        ("(MSG,a)(MSG,b) (c)", "b"), ("(MSG,\ta)", "a"), ("(MSG,)", ""), ("(MSG)", ""), ("(MSG a)", ""),
+        ("(MSGS,a)", ""), ("(a MSG,a)", ""), ("(a)", ""), (";MSG,a", ""), ("MSG,a", ""),
+        (f"(MSG,{'x' * 63})", "x" * 63), (f"(MSG,{'x' * 64})", "x" * 63),
+    ],
+)  # fmt: skip
+def test_a_comment_may_be_a_message(line: str, message: str) -> None:
+    """One in brackets that begins with MSG and a comma; of several the last, up to 63 characters."""
+    assert ffi().string(stripped(line.encode()).message).decode() == message
 
 
 # ---------------------------------------------------------------------------------------------- errors

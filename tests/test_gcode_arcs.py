@@ -120,7 +120,7 @@ def test_a_small_difference_of_the_radii_is_allowed() -> None:
     for line, allowed in (
         ("G2 X20.005 I10", True), ("G2 X20.0051 I10", True), ("G2 X20.0102 I10", False),
         ("G2 X0.013 I0.005", True), ("G2 X0.017 I0.005", False), ("G2 X2000.9 I1000", False),
-        ("G2 X2000.49 I1000", True),
+        ("G2 X2000.5 I1000", True), ("G2 X2000.500001 I1000", False),
     ):  # fmt: skip
         gcode = Gcode()
         gcode.execute("F100")

@@ -82,15 +82,15 @@ def test_a_reset_leaves_position_and_offsets() -> None:
     assert planner().passo_gcode_output(gcode.c) == 0
 
 
-@pytest.mark.parametrize("speed", [0, 1, 99, 100, 101, 500, 999, 1000, 1500])
+@pytest.mark.parametrize("speed", ["0", "0.00001", "1", "99", "100", "101", "500", "999", "1500"])
 @pytest.mark.parametrize("percent", [10, 100, 200])
-def test_the_spindle_is_between_its_limits(speed: int, percent: int) -> None:
+def test_the_spindle_is_between_its_limits(speed: str, percent: int) -> None:
     """S with its override, at least the minimum unless it is 0, at most the maximum."""
     gcode = Gcode(GcodeSettings(spindle_maximum=1000))
     gcode.c.settings.spindle_minimum = 100
     gcode.c.spindle_percent = percent
     run(gcode, f"M3 S{speed}")
-    wanted = Fraction(speed * percent, 100)
+    wanted = Fraction(speed) * percent / 100
     turning = min(max(wanted, 100 if wanted else 0), 1000)
     assert planner().passo_gcode_output(gcode.c) == SPINDLE | math.floor(turning * FULL / 1000)
 

@@ -100,6 +100,25 @@ def test_the_surface_speed_is_constant(seed: int) -> None:
             assert fast / slow < 1.04 and len(made) < 400
 
 
+@pytest.mark.parametrize(("begin", "end"), [(30, 0), (0, 30), (-30, 0), (0, -30)])
+def test_a_face_to_the_middle_or_from_there(begin: int, end: int) -> None:
+    """Where all other axes are at 0, too: the speed changes all the way; along the axis it does not."""
+    gcode = lathe(f"G18 M3 G0 X{begin} Z0", "G96 S100 G95 F0.1")
+    assert len(pieces(gcode, "G1 Z-5")) == len(pieces(gcode, "Z0")) == 1
+    made = pieces(gcode, f"G1 X{end}")
+    speeds = [rpm for *_, rpm in made][:: -1 if end else 1]
+    assert len(made) > 30 and speeds == sorted(speeds) and speeds[-1] == pytest.approx(FULL)
+    assert speeds[0] == pytest.approx(100_000 / (2 * math.pi * 30), rel=0.04)
+
+
+def test_exact_stops_are_at_the_ends_of_lines() -> None:
+    """Not where the speed changes."""
+    gcode = lathe("G61.1 G18 M3 G0 X30 Z0", "G96 S100 G95 F0.1")
+    for line in ("G1 X10", "G1 X20 Z5", "G2 X10 Z-5 R20"):
+        *stops, last = (action.stops for action in run(gcode, line) if action.kind == LINE)
+        assert len(stops) > 9 and not any(stops) and last
+
+
 def test_surface_speed_in_feet_and_back_to_rpm() -> None:
     """G97 without S keeps the speed; a rapid has that of its end."""
     gcode = lathe("G20 M3 G0 X1 Z0", "G96 S100 D900")

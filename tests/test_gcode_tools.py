@@ -48,6 +48,13 @@ def test_a_change(gcode: Gcode) -> None:
     assert kinds(gcode, "T0 M6") == [(c.PASSO_GCODE_CHANGE, 0)] and gcode.c.loaded == 0
 
 
+def test_a_change_with_a_laser(gcode: Gcode) -> None:
+    """Power in proportion to the speed is off as well; the outputs of the user stay."""
+    gcode.c.settings.laser = True
+    gcode.c.settings.spindle_maximum = 1000
+    assert kinds(gcode, "M4 S500 M62 P1 T3 M6")[0] == (planner().PASSO_GCODE_CHANGE, 1 << 5)
+
+
 def test_m61_says_which_one_is_loaded(gcode: Gcode) -> None:
     assert kinds(gcode, "M61 Q7") == [] and (gcode.c.loaded, gcode.c.tool) == (7, 7)
     assert kinds(gcode, "T7 M6") == []

@@ -101,15 +101,16 @@ struct passo_gcode_vector passo_gcode_rotate(struct passo_gcode_vector vector, s
  * from the ratio of the components, is within 1/80 of a turn. */
 uint64_t passo_gcode_angle(struct passo_gcode_vector vector)
 {
-	while (passo_size64(vector.x) < EIGHTH / 2 && passo_size64(vector.y) < EIGHTH / 2
-	       && (vector.x || vector.y)) {
+	uint64_t either = passo_size64(vector.x) | passo_size64(vector.y);
+
+	if (either == 0)
+		return 0;
+	for (; either < PASSO_GCODE_UNIT / 2; either *= 2) {
 		vector.x *= 2;
 		vector.y *= 2;
 	}
 	const uint64_t x = passo_size64(vector.x), y = passo_size64(vector.y),
 		       length = passo_gcode_length(vector);
-	if (length == 0)
-		return 0;
 	const uint64_t eighth = x == y ? EIGHTH : passo_mul_div(EIGHTH, x < y ? x : y, x < y ? y : x);
 	const uint64_t first = x < y ? 2 * EIGHTH - eighth : eighth; /* in the first quarter */
 	uint64_t angle = vector.x < 0 ? 4 * EIGHTH - first : first;

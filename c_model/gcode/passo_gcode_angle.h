@@ -19,7 +19,7 @@ struct passo_gcode_vector passo_gcode_unit_vector(uint64_t angle);
 /* Angle of a vector with components below 2^62, off by less than 2^-50 turn; of (0, 0): 0. */
 uint64_t passo_gcode_angle(struct passo_gcode_vector vector);
 
-/* The vector, below 2^61, turned by the angle of a unit vector, to the nearest integers. */
+/* The vector, below 2^62, turned by the angle of a unit vector, to the nearest integers. */
 struct passo_gcode_vector passo_gcode_rotate(
     struct passo_gcode_vector vector, struct passo_gcode_vector unit);
 

@@ -73,7 +73,9 @@ uint32_t passo_driver_run(const struct passo *passo, enum passo_gate gate)
 
 	run.status_channel = passo->channel;
 	run.run = (uint8_t)(gate != PASSO_GATE_CLOSED ? run.run | bit : run.run & ~bit);
-	run.wait_sync = (uint8_t)(gate == PASSO_GATE_SYNC ? run.wait_sync | bit : run.wait_sync & ~bit);
+	if (gate != PASSO_GATE_CLOSED) /* else a motion that waits for sync would start */
+		run.wait_sync =
+		    (uint8_t)(gate == PASSO_GATE_SYNC ? run.wait_sync | bit : run.wait_sync & ~bit);
 	return passo_pack_run(&run);
 }
 

@@ -136,6 +136,8 @@ enum passo_error passo_read_trigger(struct passo *passo, struct passo_trigger_re
 		return PASSO_OK;
 	error = passo_host_read(passo->host, (uint16_t)(passo->base + PASSO_CHANNEL_TRIGGER_POSITION_BASE),
 	    words, passo->machine.axes);
+	if (error == PASSO_OK)
+		error = passo_driver_take_off_trackers(passo, words, false);
 	for (unsigned i = 0; error == PASSO_OK && i < passo->machine.axes; i++)
 		report->positions[i] = passo_driver_offset(passo, i, (int32_t)words[i]);
 	return error;

@@ -47,6 +47,17 @@ enum passo_error passo_driver_look_at_rest(struct passo *passo);
 enum passo_error passo_driver_require_rest(struct passo *passo);
 /* Reads the positions of the core that are due to the path, without the offsets. */
 enum passo_error passo_driver_positions(struct passo *passo, int32_t *positions, bool once);
+/* Leaves the steps of the path of positions of the core. */
+#ifdef PASSO_WITHOUT_TRACKERS
+static inline enum passo_error passo_driver_take_off_trackers(
+    struct passo *passo, uint32_t *positions, bool once)
+{
+	(void)passo, (void)positions, (void)once;
+	return PASSO_OK;
+}
+#else
+enum passo_error passo_driver_take_off_trackers(struct passo *passo, uint32_t *positions, bool once);
+#endif
 /* A position of the core as the program counts it. */
 int32_t passo_driver_offset(const struct passo *passo, unsigned axis, int32_t position);
 /* Steps in units of a scale (UQ32.32), Q31.32, to nearest. PASSO_NO_UNITS if the scale is 0, or beyond 2^31.

@@ -74,7 +74,8 @@ struct passo_trigger_config {
 struct passo_trigger_report {
 	bool arming; /* waits until its source is stable for longer than the filter */
 	bool armed, fired;
-	int32_t positions[PASSO_AXES_MAX]; /* of all axes at the edge, as passo_positions() counts them */
+	/* of all axes at the edge, as passo_positions() counts them, if no tracker has moved since */
+	int32_t positions[PASSO_AXES_MAX];
 };
 
 /* Longest wait of a motion or trigger for stable inputs; then INPUTS_UNKNOWN. */
@@ -87,7 +88,7 @@ struct passo_trigger_report {
 enum passo_error passo_arm_trigger(struct passo *passo, const struct passo_trigger_config *config);
 /* Error: UNDER_WAY. */
 enum passo_error passo_disarm_trigger(struct passo *passo);
-/* One frame, two if it has fired. */
+/* One frame, two if it has fired, three with trackers. */
 enum passo_error passo_read_trigger(struct passo *passo, struct passo_trigger_report *report);
 /* Polls until the trigger has fired, at most for a time in clocks; 0: no timeout. Errors: TIMEOUT; NO_SOURCE
  * if none is armed; those of passo_poll(), but not TRIGGER. */

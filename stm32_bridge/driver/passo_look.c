@@ -76,10 +76,9 @@ enum passo_error passo_driver_require_rest(struct passo *passo)
 	return PASSO_OK;
 }
 
-/* Leaves the steps of the path. */
-static enum passo_error take_off_trackers(struct passo *passo, uint32_t *positions, bool once)
-{
 #ifndef PASSO_WITHOUT_TRACKERS
+enum passo_error passo_driver_take_off_trackers(struct passo *passo, uint32_t *positions, bool once)
+{
 	const uint16_t address = (uint16_t)(passo->base + PASSO_CHANNEL_TRACKER_POSITION_BASE);
 	const size_t axes = passo->machine.axes;
 	uint32_t words[PASSO_AXES_MAX];
@@ -91,11 +90,8 @@ static enum passo_error take_off_trackers(struct passo *passo, uint32_t *positio
 	for (size_t i = 0; error == PASSO_OK && i < axes; i++)
 		positions[i] -= words[i];
 	return error;
-#else
-	(void)passo, (void)positions, (void)once;
-	return PASSO_OK;
-#endif
 }
+#endif
 
 enum passo_error passo_driver_positions(struct passo *passo, int32_t *positions, bool once)
 {
@@ -106,7 +102,7 @@ enum passo_error passo_driver_positions(struct passo *passo, int32_t *positions,
 
 	if (error != PASSO_OK)
 		return error;
-	error = take_off_trackers(passo, words, once);
+	error = passo_driver_take_off_trackers(passo, words, once);
 	if (error != PASSO_OK)
 		return error;
 	for (unsigned i = 0; i < passo->machine.axes; i++) {

@@ -68,8 +68,6 @@ static enum passo_error withdraw(struct passo *passo)
 	if (error == PASSO_OK && waits)
 		error = passo_driver_take_over(passo);
 	passo->output = output;
-	if (error == PASSO_OK)
-		error = passo_driver_gate(passo, passo->gate);
 	return error == PASSO_OK && waits ? PASSO_ERROR_NOT_TURNING : error;
 }
 

@@ -271,9 +271,7 @@ class Judge:
         fate = self.fates.get(mutant.name)
         tried = fate.tried or []
         reaching = [
-            test
-            for test in self.known
-            if mutant.name in test.reached and _of_record(test.name) == record
+            test for test in self.known if mutant.name in test.reached and _of_record(test.name) == record
         ]
         left = [test for test in reaching if test.case(mutant) not in tried]
         spent = sum(test.seconds + TEST for test in reaching if test.case(mutant) in tried)
