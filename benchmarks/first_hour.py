@@ -199,7 +199,7 @@ def measure(
 
 def known_all() -> bool:
     """Whether the figures of all parts are kept."""
-    return KEPT.exists() and PARTS.keys() <= json.loads(KEPT.read_text()).keys()
+    return KEPT.exists() and set(PARTS) <= set(json.loads(KEPT.read_text()))
 
 
 def measure_short(tell: Tell) -> list[Figure]:

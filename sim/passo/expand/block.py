@@ -43,8 +43,7 @@ def words_of(text: str) -> list[Word]:
 
 def unread_of(text: str) -> str:
     """Where the words of a plain line end before it does: the next characters, if they can be shown."""
-    bare = split(text)[0]
-    rest = bare[WORDS.match(bare).end() :][:SHOWN_MOST].upper()
+    rest = WORDS.sub("", split(text)[0], count=1)[:SHOWN_MOST].upper()
     return rest if VISIBLE.fullmatch(rest) else ""
 
 
