@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
 """The numbers of a first hour with Passo, each with its goal; and that hour itself.
 
-    python -m benchmarks.first_hour [--short] [--again] [PART...]
+    python -m benchmarks.first_hour [--short] [--again] [--hour FILE] [PART...]
 
 Writes the table of docs/first_hour.md. What was measured of a commit is kept, part by part, in
 build/first_hour/figures.json: a run that was interrupted continues where it was. `--again` measures all of it
 again; names of parts measure these alone, beside what is known of the others. `--short` prints a table of
-small cases, without the hour in a fresh clone (tools/first_hour.sh). Times are of the processor, but for
-`make demo`. Needs tools/setup.sh dev firmware web browser, and the history of the repository for the times of
-an earlier commit.
+small cases, without the hour in a fresh clone (tools/first_hour.sh); `--hour` takes it from an hour.json of
+that script, as on a bare machine. Times are of the processor, but for `make demo`. Needs tools/setup.sh dev
+firmware web browser, and the history of the repository for the times of an earlier commit.
 """
 
 import argparse
@@ -18,7 +18,7 @@ import resource
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -36,6 +36,7 @@ DEMO_SECONDS, DEMO_MEGABYTES, FIRMWARE_SECONDS = 120, 400, 20
 KEPT = paths.build / "first_hour" / "figures.json"
 SHORT = 20  # by which lines are fewer
 Tell = Callable[[str], None]
+Part = Callable[[Tell], "Iterator[Figure]"]
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,8 @@ COLUMNS = ("what", "goal", "measured", "met", "by")
 
 def most(what: str, goal: float, measured: float, unit: str, command: str) -> Figure:
     """A figure that is at most its goal."""
-    return Figure(what, f"at most {goal:g} {unit}", f"{measured:.3g} {unit}", measured <= goal, command)
+    shown = f"{measured:.3g}" if measured < 1000 else f"{measured:,.0f}"
+    return Figure(what, f"at most {goal:g} {unit}", f"{shown} {unit}", measured <= goal, command)
 
 
 def plays(tell: Tell, name: str, goal: float) -> Iterator[Figure]:
@@ -119,11 +121,18 @@ def hour(tell: Tell) -> Iterator[Figure]:
         clone = Path(name) / "passo"
         subprocess.run(["sh", SCRIPT, paths.root, clone], check=True)
         made = clone / "build" / "first_hour"
-        found = json.loads((made / "hour.json").read_text())
         write_picture((made / "page.png").read_bytes())
+        yield from hour_of(made / "hour.json", tell)
+
+
+def hour_of(file: Path, tell: Tell) -> Iterator[Figure]:
+    """As the script has written it."""
+    found = json.loads(file.read_text())
     tell(f"make demo: {found['seconds']} s, {found['megabytes']} MB")
     command = "sh tools/first_hour.sh"
     yield most("`make demo` in a fresh clone, by the clock", DEMO_SECONDS, found["seconds"], "s", command)
+    what = "the same, of the processor, on two cores"
+    yield most(what, 2 * DEMO_SECONDS, found["processor"], "s", command)
     yield most("a fresh clone after `make demo`", DEMO_MEGABYTES, found["megabytes"], "MB", command)
     count = f"{found['commands']} of {found['commands']}"
     yield Figure("commands of README and tutorial that run there", "all", count, True, command)
@@ -140,15 +149,23 @@ def write_picture(png: bytes) -> None:
     write_bytes(folder / "page.png", png)
 
 
-def written(figures: list[Figure]) -> str:
-    """The page with these figures."""
-    rows = [COLUMNS, ("---", "---", "---", "---", "---"), *(figure.row for figure in figures)]
-    text = "".join(f"| {' | '.join(row)} |\n" for row in rows)
-    return TABLE.sub(lambda found: found[1] + text + found[2], PAGE.read_text(encoding="utf-8"))
+def written(figures: list[Figure], keep: bool = False) -> str:
+    """The page with these figures; `keep`: beside its rows of others."""
+    page = PAGE.read_text(encoding="utf-8")
+    rows = [figure.row for figure in figures]
+    if keep:
+        new, what = {row[0]: row for row in rows}, [row[0] for row in rows]
+        there = [tuple(line.strip("| ").split(" | ")) for line in page.splitlines() if line.startswith("| ")]
+        old = [row for row in there[2:] if row[0] not in new]
+        # those of a command stay together
+        at = next((at for at, row in enumerate(old) if row[-1] == rows[0][-1]), len(old))
+        rows = [*old[:at], *(new[one] for one in what), *old[at:]]
+    text = "".join(f"| {' | '.join(row)} |\n" for row in (COLUMNS, ("---",) * len(COLUMNS), *rows))
+    return TABLE.sub(lambda found: found[1] + text + found[2], page)
 
 
 # In the order of the page.
-PARTS: dict[str, Callable[[Tell], Iterator[Figure]]] = {
+PARTS: dict[str, Part] = {
     "preview": lambda tell: previews(tell, False),
     "page": lambda tell: pages(tell, False),
     "play": lambda tell: plays(tell, "rosette", PLAY),
@@ -165,17 +182,24 @@ def commit() -> str:
     return asked.stdout.strip()
 
 
-def measure(tell: Tell, chosen: Sequence[str] = (), again: bool = False) -> list[Figure]:
+def measure(
+    tell: Tell, chosen: Sequence[str] = (), again: bool = False, parts: Mapping[str, Part] | None = None
+) -> list[Figure]:
     """All figures: of the chosen parts now, of the others as they were; see above."""
-    head = commit()
+    head, parts = commit(), parts or PARTS
     kept = json.loads(KEPT.read_text()) if KEPT.exists() else {}
-    for name, part in PARTS.items():
+    for name, part in parts.items():
         known = name in kept and kept[name]["commit"] == head
         if name in chosen or not (chosen or (known and not again)):
             kept[name] = {"commit": head, "figures": [asdict(figure) for figure in part(tell)]}
             make_folder(KEPT.parent)
             write_json(kept, KEPT)
-    return [Figure(**figure) for name in PARTS if name in kept for figure in kept[name]["figures"]]
+    return [Figure(**figure) for name in parts if name in kept for figure in kept[name]["figures"]]
+
+
+def known_all() -> bool:
+    """Whether the figures of all parts are kept."""
+    return KEPT.exists() and set(PARTS) <= set(json.loads(KEPT.read_text()))
 
 
 def measure_short(tell: Tell) -> list[Figure]:
@@ -188,6 +212,7 @@ def main() -> int:
     options = argparse.ArgumentParser(prog="first_hour", description="Measure a first hour with Passo.")
     options.add_argument("--short", action="store_true", help="small cases, no fresh clone, no page")
     options.add_argument("--again", action="store_true", help="forget what was measured")
+    options.add_argument("--hour", type=Path, metavar="FILE", help="hour.json of tools/first_hour.sh")
     options.add_argument("parts", nargs="*", metavar="PART", help="measure only these")
     chosen = options.parse_args()
     if unknown := set(chosen.parts) - set(PARTS):
@@ -195,8 +220,10 @@ def main() -> int:
     if chosen.short:
         figures = measure_short(stages())
     else:
-        figures = measure(stages(), chosen.parts, chosen.again)
-        write_text(PAGE, written(figures))
+        parts = PARTS | ({"hour": lambda tell: hour_of(chosen.hour, tell)} if chosen.hour else {})
+        wanted = ["hour"] if chosen.hour and not chosen.parts else chosen.parts
+        figures = measure(stages(), wanted, chosen.again, parts)
+        write_text(PAGE, written(figures, keep=not known_all()))
     rows = table("A first hour", *COLUMNS)
     for figure in figures:
         rows.add_row(*figure.row)

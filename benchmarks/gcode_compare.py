@@ -11,6 +11,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 
 from passo import random_cases
+from passo.console import cancelable, each
 
 from benchmarks import gcode_expand
 from benchmarks.gcode_motion import Played, verdict
@@ -38,13 +39,15 @@ def main() -> int:
     options = asked.parse_args()
     count, seed = options.programs, options.seed
     play = gcode_expand.play_expanded
-    different = _compare("programs", _random(random_program, count, seed), play_passo, _judge)
-    for kind, made, judge in gcode_expand.KINDS:
-        programs = _random(made, count // len(gcode_expand.KINDS), seed)
-        different += _compare(f"expanded {kind}", programs, play, judge)
-    for kind, corpus, judge in gcode_expand.CORPORA:
-        different += _compare(f"{kind} of the corpus", dict(corpus()), play, judge)
-    return different > 0
+    different = 0
+    with cancelable() as work:
+        different += _compare("programs", _random(random_program, count, seed), play_passo, _judge)
+        for kind, made, judge in gcode_expand.KINDS:
+            programs = _random(made, count // len(gcode_expand.KINDS), seed)
+            different += _compare(f"expanded {kind}", programs, play, judge)
+        for kind, corpus, judge in gcode_expand.CORPORA:
+            different += _compare(f"{kind} of the corpus", dict(corpus()), play, judge)
+    return different > 0 or work.canceled
 
 
 def _random(make: Callable[[random.Random], list[str]], count: int, seed: int) -> dict[str, list[str]]:
@@ -60,19 +63,32 @@ def _compare(
 ) -> int:
     """Compare programs of a kind; return how many differ."""
     counts: Counter[str] = Counter()
-    for name, program in programs.items():
-        ours = play(program)
-        counts["lines"] += len(program)
-        counts["motions"] += len(ours.motions)
-        counts["arcs"] += sum(motion.center is not None for motion in ours.motions)
-        counts["refused"] += ours.refused > 0
-        if found := judge(program, ours):
-            counts["different"] += 1
-            print(f"{kind}, {name}: {found}", *program, sep="\n")
-    names = ("lines", "motions", "arcs", "refused", "different")
-    told = ", ".join(f"{counts[name]:,} {name}" for name in names)
-    print(f"{len(programs):,} {kind}: {told}")
+    try:
+        for name, program in each(kind, programs.items()):
+            _count(counts, f"{kind}, {name}", program, play(program), judge)
+    finally:
+        names = ("lines", "motions", "arcs", "refused", "different")
+        told = ", ".join(f"{counts[name]:,} {name}" for name in names)
+        print(f"{counts['programs']:,} {kind}: {told}", flush=True)
     return counts["different"]
+
+
+def _count(
+    counts: Counter[str],
+    name: str,
+    program: Sequence[str],
+    ours: Played,
+    judge: Callable[[Sequence[str], Played], str],
+) -> None:
+    """Judge a program and say what differs."""
+    counts["programs"] += 1
+    counts["lines"] += len(program)
+    counts["motions"] += len(ours.motions)
+    counts["arcs"] += sum(motion.center is not None for motion in ours.motions)
+    counts["refused"] += ours.refused > 0
+    if found := judge(program, ours):
+        counts["different"] += 1
+        print(f"{name}: {found}", *program, sep="\n")
 
 
 if __name__ == "__main__":

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """What a newcomer does after `make demo`: all else in README and tutorial, then a part in the browser.
 
-    python -m benchmarks.hour SECONDS MEGABYTES
+    python -m benchmarks.hour SECONDS PROCESSOR MEGABYTES
 
-The arguments are what `make demo` took; tools/first_hour.sh calls this in a fresh clone. Writes
-build/first_hour/hour.json and page.png.
+The arguments are what `make demo` took, by the clock and of the processor; tools/first_hour.sh calls this in
+a fresh clone. Writes build/first_hour/hour.json and page.png.
 """
 
 import json
@@ -74,7 +74,7 @@ def look(page: Path, picture: Path) -> list[int]:
         return list(browser.value("passo.motion.axes.map(axis => axis.rises.length)"))
 
 
-def hour(seconds: int, megabytes: int) -> dict[str, Any]:
+def hour(seconds: int, processor: int, megabytes: int) -> dict[str, Any]:
     """All of it; what was done. Raises Failure."""
     tell = stages()
     done = commands()
@@ -86,12 +86,18 @@ def hour(seconds: int, megabytes: int) -> dict[str, Any]:
     if seen != made:
         raise Failure(f"the page shows {seen} steps, the command makes {made}")
     tell(f"the part in the browser: {sum(seen):,} steps, those of the command")
-    return {"seconds": seconds, "megabytes": megabytes, "commands": len(done), "steps": sum(seen)}
+    return {
+        "seconds": seconds,
+        "processor": processor,
+        "megabytes": megabytes,
+        "commands": len(done),
+        "steps": sum(seen),
+    }
 
 
 def main() -> int:
     """Of the command."""
-    found = hour(int(sys.argv[1]), int(sys.argv[2]))
+    found = hour(*map(int, sys.argv[1:4]))
     make_folder(OUT)
     write_json(found, OUT / "hour.json")
     print(json.dumps(found))

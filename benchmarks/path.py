@@ -13,7 +13,7 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from passo.axis_judge import Marks, shares
-from passo.console import console, table
+from passo.console import console, each, table
 from passo.output import write_json
 from passo.path import LOOK_AHEAD, PathAxis, PathSettings
 from passo.path_rounding import Line
@@ -112,9 +112,7 @@ def count(result: Result, lines: Sequence[Line]) -> None:
 def wanderings() -> Result:
     """The worst of many random polylines; the time is that of all."""
     worst = Result(f"{WANDERINGS} polylines", 0, 0.0, 0.0, 0.0, 0)
-    for number, lines in enumerate(path_cases.wanderings(WANDERINGS)):
-        if number % 20 == 0:
-            console.print(f"Random polylines, {number} of {WANDERINGS} ...")
+    for number, lines in each("random polylines", list(enumerate(path_cases.wanderings(WANDERINGS)))):
         result = times("", lines)
         worst.lines += result.lines
         worst.seconds += result.seconds
@@ -141,7 +139,7 @@ class Soft:
 def shapes() -> list[Soft]:
     """Time and jerk of all profiles."""
     found = []
-    for name, case in SOFT_CASES.items():
+    for name, case in each("profiles", SOFT_CASES.items()):
         lines = case()
         linear = [plan(lines, SOFT, n).seconds for n in (len(lines) + 4, LOOK_AHEAD)]
         for profile in PROFILES:
@@ -159,7 +157,7 @@ def shapes() -> list[Soft]:
 def main(paths_wanted: int = path_adversary.PATHS) -> None:
     """Measure, print and write the report."""
     results = []
-    for name, case in CASES.items():
+    for name, case in each("paths", CASES.items()):
         console.print(f"{name[0].upper()}{name[1:]} ...")
         lines = case()
         result = times(name, lines)

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 from passo.build import Parameters
-from passo.console import console
+from passo.console import cancelable, console, in_turn, leave_interrupts, progress
 from passo.driver import Driver
 from passo.engine import EVENT, NUMBERS, AroundEngine, model_engine, moves_of
 from passo.native import ffi
@@ -298,8 +298,13 @@ def main(words: list[str]) -> None:
     gantries = [gantry_of(rng) for _ in range(runs)]
     worst = {"square": 0.0, "late": 0.0, "racking": 0.0, "passed": 0.0}
     square(gantries[0])  # builds the model before the workers begin
-    with ProcessPoolExecutor(os.cpu_count()) as pool:
-        for number, (gantry, made) in enumerate(zip(gantries, pool.map(square, gantries), strict=True)):
+    done = 0
+    with (
+        cancelable() as work,
+        ProcessPoolExecutor(os.cpu_count(), initializer=leave_interrupts) as pool,
+        progress("gantries", runs) as report,
+    ):
+        for number, (gantry, made) in enumerate(zip(gantries, in_turn(pool, square, gantries), strict=True)):
             worst["square"] = max(worst["square"], made.square)
             worst["late"] = max(worst["late"], made.late / gantry.most_late)
             worst["racking"] = max(worst["racking"], made.racking / gantry.racking)
@@ -307,8 +312,12 @@ def main(words: list[str]) -> None:
             for problem in problems(gantry, made):
                 bad += 1
                 console.print(f"{number}: {problem}: {gantry}", soft_wrap=True)
+            done += 1
+            report(done)
     shown = ", ".join(f"{name} {value:.3f}" for name, value in worst.items())
-    console.print(f"{runs:,} gantries: at most {shown} (steps; the others of their bounds)")
+    console.print(f"{done:,} gantries: at most {shown} (steps; the others of their bounds)")
+    if work.canceled:
+        raise SystemExit("canceled")
     if bad:
         raise SystemExit(f"{bad} faults")
     if runs >= RUNS:

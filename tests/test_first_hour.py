@@ -62,6 +62,7 @@ def test_a_run_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 def test_figures_and_their_goals() -> None:
     assert most("a", 5, 4.999, "s", "c").met and most("a", 5, 5, "s", "c").met
     missed = most("a", 5, 5.001, "s", "make c")
+    assert most("a", 5, 1459, "s", "c").measured == "1,459 s"
     assert missed.row == ("a", "at most 5 s", "5 s", "**no**", "`make c`")
 
 
@@ -72,6 +73,22 @@ def test_the_page_is_written() -> None:
     assert "| a part | 2 s | 1 s | yes | `make part` |\n<!-- to here -->" in made
     assert made.partition("<!--")[0] == before.partition("<!--")[0]
     assert made.partition("<!-- to here")[2] == before.partition("<!-- to here")[2]
+
+
+def test_rows_of_other_parts_stay() -> None:
+    """Where a part is measured alone and nothing is known of the others."""
+    (first, *_) = rows = [line for line in first_hour.PAGE.read_text().splitlines() if line.startswith("| ")][
+        2:
+    ]
+    what = first.strip("| ").split(" | ")[0]
+    own = Figure(what, "5 s", "9 s", False, "`python -m benchmarks.preview`".strip("`"))
+    made = first_hour.written([own, Figure("a part", "2 s", "1 s", True, "make part")], keep=True)
+    after = [line for line in made.splitlines() if line.startswith("| ")][2:]
+    assert after[:2] == [
+        f"| {what} | 5 s | 9 s | **no** | `python -m benchmarks.preview` |",
+        "| a part | 2 s | 1 s | yes | `make part` |",
+    ]
+    assert after[2:] == rows[1:]
 
 
 def test_ratios_are_measured_with_the_same_steps(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -94,11 +111,18 @@ def test_the_part_on_the_page(tmp_path: Path) -> None:
     assert (tmp_path / "page.png").stat().st_size > 20_000
 
 
+DEMO = """demo:
+	sleep 1.1
+	head -c 3000000 /dev/zero > made
+	python3 -c 'import time; [None for _ in iter(lambda: time.process_time() > 2.2, True)]'
+"""
+
+
 def test_the_script(tmp_path: Path) -> None:
-    """In plain shell: it clones, runs the demonstration, and hands on seconds and megabytes."""
+    """In plain shell: it clones, runs the demonstration, and hands on seconds, processor and megabytes."""
     repository = tmp_path / "repository"
     (repository / ".venv" / "bin").mkdir(parents=True)
-    (repository / "Makefile").write_text("demo:\n\tsleep 1.1; head -c 3000000 /dev/zero > made\n")
+    (repository / "Makefile").write_text(DEMO)
     python = repository / ".venv" / "bin" / "python"
     python.write_text('#!/bin/sh\necho "$@" > said\n')
     python.chmod(0o755)
@@ -106,8 +130,19 @@ def test_the_script(tmp_path: Path) -> None:
     for words in (("init", "-q"), ("add", "-f", "."), ("commit", "-q", "-m", "one")):
         subprocess.run([*git, *words], check=True)
     subprocess.run(["sh", first_hour.SCRIPT, repository, tmp_path / "clone"], check=True)
-    module, name, seconds, megabytes = (tmp_path / "clone" / "said").read_text().split()
-    assert (module, name) == ("-m", "benchmarks.hour") and int(seconds) >= 1 and 3 <= int(megabytes) < 10
+    module, name, *said = (tmp_path / "clone" / "said").read_text().split()
+    seconds, processor, megabytes = map(int, said)
+    assert (module, name) == ("-m", "benchmarks.hour") and seconds >= 3
+    assert 2 <= processor < 10 and 3 <= megabytes < 10
+
+
+def test_an_hour_of_a_bare_machine(tmp_path: Path) -> None:
+    """Is read from its file."""
+    file = tmp_path / "hour.json"
+    file.write_text('{"seconds": 130, "processor": 200, "megabytes": 350, "commands": 3, "steps": 51200}')
+    figures = list(first_hour.hour_of(file, lambda _: None))
+    assert [figure.met for figure in figures] == [False, True, True, True, True]
+    assert [figure.measured for figure in figures[1:4]] == ["200 s", "350 MB", "3 of 3"]
 
 
 def test_a_command_that_fails_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:

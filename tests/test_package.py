@@ -162,6 +162,25 @@ def test_the_workflow_calls_what_is_there() -> None:
     assert os.access(paths.root / command, os.X_OK)
 
 
+KINDS = ["Added", "Changed", "Deprecated", "Removed", "Fixed", "Security"]  # of Keep a Changelog 1.1.0
+
+
+def test_the_changelog_keeps_its_form() -> None:
+    """Releases with dates, the newest first; in each the kinds of changes in their order, each once."""
+    text = (paths.root / "CHANGELOG.md").read_text()
+    title, *releases = re.split(r"^## ", text, flags=re.M)
+    assert title.startswith("# Changelog\n") and "https://keepachangelog.com/en/1.1.0/" in title
+    heads = [
+        re.fullmatch(r"\[(\d+\.\d+\.\d+)\] - (\d{4}-\d\d-\d\d)", one.splitlines()[0]) for one in releases
+    ]
+    numbers = [(tuple(map(int, head[1].split("."))), head[2]) for head in heads if head]
+    assert len(numbers) == len(releases) and numbers == sorted(set(numbers), reverse=True)
+    for release in releases:
+        kinds = re.findall(r"^### (.*)$", release, re.M)
+        assert kinds == sorted(set(kinds), key=KINDS.index)
+        assert not re.search(r"\n\n\*.*(?:\n  .*)*\n\n\*", release)  # a list without gaps
+
+
 def test_the_release_is_the_same_everywhere() -> None:
     """Package, command, FuseSoC, console, change log and what the pages show of the console."""
     assert re.fullmatch(r"\d+\.\d+\.\d+", RELEASE)

@@ -54,7 +54,7 @@ def test_the_session_of_the_readme(tmp_path: Path) -> None:
 
 def test_the_moves_of_the_planning(tmp_path: Path) -> None:
     """Each is run, after the table of its own shape has been made."""
-    (command,) = [block for block in blocks(PLANNING, "") if block.startswith("passo shape")]
+    (command,) = [block for block in blocks(PLANNING, "sh") if block.startswith("passo shape")]
     moves = blocks(PLANNING, "toml")
     assert len(moves) == 11
     for number, text in enumerate(moves):

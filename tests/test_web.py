@@ -23,6 +23,7 @@ from passo.web import EXAMPLE, build
 from benchmarks.page import SECONDS_MOST, measure, play
 from tests.helpers.browser import Browser
 from tests.helpers.firefox import Firefox
+from tests.helpers.shown_commands import BLOCKS, TUTORIAL
 
 MOVES = (
     ([6400, 3840, -2560], "cosine", "total_time={} ramp_time={}", ("0.4", "0.2")),
@@ -246,15 +247,109 @@ def test_a_file_is_dropped(opened: Browser | Firefox) -> None:
     assert opened.value("passo.motion.axes[0].rises.length") == 240
 
 
-def test_keys_run_and_the_system_chooses_the_colors(tmp_path: Path, page: str) -> None:
+def test_the_system_chooses_the_colors(tmp_path: Path, page: str) -> None:
     with Browser(tmp_path / "browser", dark=True) as browser:
         browser.open(page, READY)
         assert browser.value("document.documentElement.dataset.theme") == "dark"
-        browser.value("(web.put('G1 F600 X3', 'G-code'), document.getElementById('lines').focus())")
-        press = "new KeyboardEvent('keydown', {key: 'Enter', ctrlKey: true, bubbles: true})"
-        browser.value(f"document.activeElement.dispatchEvent({press})")
-        browser.wait("web.done > 1")
+
+
+def test_keys(opened: Browser | Firefox) -> None:
+    """Ctrl+Enter runs, also from the text, to which Enter adds a line; Escape cancels."""
+    opened.value("(web.put('G1 F600 X3', 'G-code'), document.getElementById('lines').focus())")
+    done = opened.value("web.done")
+    opened.press("Enter", ctrl=True)
+    opened.wait(f"web.done > {done}")
+    assert opened.value("passo.motion.axes[0].rises.length") == 240
+    assert opened.value("web.text") == "G1 F600 X3"
+    opened.press("Enter")
+    assert opened.value("web.text.split('\\n').length") == 2
+    assert opened.value("[web.done, !!web.running]") == [done + 1, False]
+    opened.value(f"web.put({json.dumps(LONG)}, 'G-code')")
+    opened.press("Enter", ctrl=True)
+    opened.wait("web.running")
+    opened.press("Escape")
+    opened.wait(f"web.done > {done + 1}")
+    assert opened.value(VERDICT).startswith("canceled")
+
+
+WINDOW = "[passo.view.min, passo.view.max].map(clock => Math.round(100 * clock / passo.motion.clocks))"
+
+
+def test_charts_by_keys(opened: Browser | Firefox) -> None:
+    """Zoom, move, all of it; in a text they are characters."""
+    verdict_of(opened, "G1 F600 X3")
+    opened.value("(passo.view.set(0, passo.motion.clocks), document.activeElement.blur())")
+    for key, window in (("+", [25, 75]), ("ArrowRight", [38, 88]), ("ArrowLeft", [25, 75]), ("-", [0, 100])):
+        opened.press(key)
+        assert opened.value(WINDOW) == pytest.approx(window, abs=1)
+    opened.press("+")
+    opened.press("0")
+    assert opened.value(WINDOW)[0] <= 0 and opened.value(WINDOW)[1] >= 100
+    opened.value("document.getElementById('lines').focus()")
+    opened.press("0")
+    assert opened.value("web.text").count("0") == 3 and opened.value(WINDOW)[0] <= 0
+
+
+def test_charts_by_fingers(browser: Browser) -> None:
+    """One moves them, two zoom."""
+    verdict_of(browser, "G1 F600 X3")
+    browser.wait("passo.view.isDrawn")
+    browser.value("passo.view.set(0.25 * passo.motion.clocks, 0.75 * passo.motion.clocks)")
+    browser.touch("#speed .u-over", [0.8], [0.7], [0.6])
+    assert browser.value(WINDOW) == pytest.approx([35, 85], abs=1)
+    browser.value("passo.view.set(0, passo.motion.clocks)")
+    browser.touch("#speed .u-over", [0.4, 0.6], [0.3, 0.7], [0.2, 0.8])
+    begin, end = browser.value(WINDOW)
+    assert end - begin == pytest.approx(33, abs=3) and begin + end == pytest.approx(100, abs=4)
+
+
+@pytest.mark.parametrize("name", ["a.nc", "a.ngc", "a.gcode", "a.tap", "a.toml"])
+def test_a_file_is_opened(browser: Browser, name: str) -> None:
+    """By the button; the dialog offers these endings."""
+    opened_machine = name.endswith("toml")
+    text = OWN if opened_machine else "G1 F600 X3"
+    assert f".{name.partition('.')[2]}" in browser.value("document.getElementById('file').accept").split(",")
+    done = browser.value("web.done")
+    browser.value(
+        "(input => { const data = new DataTransfer();"
+        f"data.items.add(new File([{json.dumps(text)}], {json.dumps(name)})); input.files = data.files;"
+        "input.dispatchEvent(new Event('change')); })(document.getElementById('file'))"
+    )
+    browser.wait(f"web.done > {done}")
+    if opened_machine:
+        assert browser.value("web.machine.profile") == "cosine"
+    else:
         assert browser.value("passo.motion.axes[0].rises.length") == 240
+
+
+def drop(opened: Browser | Firefox, text: str, name: str) -> None:
+    opened.value(
+        f"(() => {{ const data = new DataTransfer();"
+        f"data.items.add(new File([{json.dumps(text)}], {json.dumps(name)}));"
+        "dispatchEvent(new DragEvent('drop', {dataTransfer: data})); })()"
+    )
+
+
+TOLD = "document.getElementById('told').textContent"
+
+
+def test_a_move_file_is_dropped(opened: Browser | Firefox) -> None:
+    """That of the tutorial: as lines, at its clock; what the page has not is said."""
+    (text,) = (own for kind, own in BLOCKS.findall(TUTORIAL.read_text()) if kind == "toml")
+    done = opened.value("web.done")
+    drop(opened, text, "moves.toml")
+    opened.wait(f"web.done > {done}")
+    assert opened.value(f"[{VERDICT}, web.language, passo.motion.hz]") == ["done", "moves", 16_000_000]
+    assert opened.value("passo.motion.axes.map(axis => axis.rises.length)") == [12800, 7680, 5120]
+    assert opened.value("web.text").startswith("move steps=6400,3840,-2560 profile=cosine total_time=0.4 ")
+    opened.wait(f"{TOLD} === 'moves.toml: without its [pins]'")
+    drop(opened, text.replace("16_000_000", "20_000_000"), "other.toml")
+    opened.wait(f"{TOLD}.startsWith('other.toml: clock_hz: the page has 16,000,000')")
+    drop(opened, (paths.examples / "homing.toml").read_text(), "homing.toml")
+    opened.wait(f"{TOLD}.includes('passo run plays it')")
+    drop(opened, text.replace("steps = [6400", "steps = ]6400"), "bad.toml")
+    opened.wait(f"{TOLD}.startsWith('bad.toml: ')")
+    assert opened.value("web.done") == done + 1
 
 
 AXE = paths.root / ".venv" / "axe" / "node_modules" / "axe-core" / "axe.min.js"
@@ -351,11 +446,26 @@ G1 X1 F99 G99
 !
 /G93 G1 X1
 """
+WRONG = """G0 X1 M3 G1 Y1
+G17 X1 G18
+/ G0 X1 ! Y1
+G4 P-1
+G0 X1 Y. ; a comment
+G0 X1000000000
+G4
+N99999999
+G2 X9 R1 F1
+G10 L3 P1 X1
+G10 L2 P9 X1
+G43.1 X1
+G53 G2 X1 I1
+G80 X1
+"""
 ANSWER = "document.getElementById('answer').textContent"
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
-@pytest.mark.parametrize("program", [REFUSED, "G1 X1\n" * 30])
+@pytest.mark.parametrize("program", [REFUSED, WRONG, "G1 X1\n" * 30])
 def test_all_bad_lines_are_said_as_the_command_says_them(
     browser: Browser, tmp_path: Path, program: str, end: str
 ) -> None:

@@ -140,7 +140,7 @@ def machine_files(folder: Path) -> dict[str, tuple[bytes, int]]:
     for file in MACHINES:
         if not make_machine(file, folder / file.stem):
             raise Failure(f"{short(file)}: the bitstream misses its clock")
-    files = sorted(path for path in folder.rglob("*") if path.is_file())
+    files = sorted(path for path in folder.rglob("*") if path.suffix in SHIPPED)
     return {
         f"machines/{path.relative_to(folder)}": (path.read_bytes(), path.stat().st_mode) for path in files
     }

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Speed of the engines and the link, measured and written to build/bench.json."""
+"""Speed of the engines and the link, measured in processor time and written to build/bench.json."""
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
@@ -8,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from passo.build import Parameters
-from passo.console import console, table
+from passo.console import cancelable, console, each, table
 from passo.engine import Engine, model_engine, rtl_engine
 from passo.link_bench import measure_all
 from passo.moves import MoveFile, MoveInTime, PinTiming
@@ -36,14 +37,16 @@ class Measurement:
     engine: Callable[[], Engine]
 
     def clocks_per_second(self) -> float:
-        """Clocks per second of real time during the motion, including SPI frames and pin recording."""
+        """Clocks per second of the processor for the motion, including SPI frames and pin recording."""
         steps = tuple(int(speed * self.seconds) for speed in self.steps_per_second)
         move = MoveInTime(steps, "linear", self.seconds, Fraction(0))
         file = MoveFile(Path(self.name), CLOCK_HZ, PinTiming(), (move,))
         with self.engine() as engine:
+            began = time.process_time()
             run = execute(file, plan_file(file, PARAMETERS), engine)
+            seconds = time.process_time() - began
         assert not run.problems(), run.problems()
-        return run.clocks / run.seconds
+        return run.clocks / seconds
 
 
 def _rtl() -> Engine:
@@ -68,13 +71,17 @@ MEASUREMENTS = (
 
 
 def bench() -> dict[str, Any]:
-    """Measure, print, write build/bench.json and return its contents."""
+    """Measure, print, write build/bench.json and return its contents; nothing if it is canceled."""
     shown = table("Core with 1 channel of 4 axes at 100 MHz", "engine", "motion", "clocks/s", "of real time")
     speeds = {}
-    for m in MEASUREMENTS:
-        speed = speeds[m.name] = m.clocks_per_second()
-        kilohertz = ", ".join(f"{steps / 1000:g}" for steps in m.steps_per_second)
-        shown.add_row(m.text, f"{kilohertz} kHz", f"{speed / 1e6:,.1f} M", f"{speed / CLOCK_HZ:.2g}")
+    with cancelable() as work:
+        for m in each("speeds", MEASUREMENTS):
+            speed = speeds[m.name] = m.clocks_per_second()
+            kilohertz = ", ".join(f"{steps / 1000:g}" for steps in m.steps_per_second)
+            shown.add_row(m.text, f"{kilohertz} kHz", f"{speed / 1e6:,.1f} M", f"{speed / CLOCK_HZ:.2g}")
+    if work.canceled:
+        console.print(shown)
+        return {}
     links = table(
         "Lines of 4 axes over the link, core at 72 MHz", "SCLK", "link limit", "fed", "without a gap"
     )

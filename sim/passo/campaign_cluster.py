@@ -4,13 +4,13 @@
 import asyncio
 import logging
 import os
-import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
 from passo.build import Parameters, model_library, planner_library, rtl_library
 from passo.campaign_moves import AXES_OF_TWO
+from passo.console import leave_interrupts
 from passo.failure import BadInputError
 from passo.run import AXES_OF_CORES, parameters_for
 
@@ -36,11 +36,6 @@ def prepare(engine: str) -> str:
     return __version__
 
 
-def _leave_interrupts() -> None:
-    """Of a worker: Ctrl-C in a terminal is for the process that waits for it."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-
 @contextmanager
 def local_cluster(jobs: int) -> Iterator[Any]:
     """A client of workers on this machine, one process each."""
@@ -61,7 +56,7 @@ def local_cluster(jobs: int) -> Iterator[Any]:
         Client(cluster) as client,
     ):
         client.wait_for_workers(jobs)
-        client.run(_leave_interrupts)
+        client.run(leave_interrupts)
         yield client
 
 

@@ -313,8 +313,7 @@ def _demo(options: argparse.Namespace) -> int:
 def _bench(options: argparse.Namespace) -> int:
     from passo.bench import bench
 
-    bench()
-    return OK
+    return OK if bench() else INTERRUPTED
 
 
 if __name__ == "__main__":

@@ -1,10 +1,18 @@
 # SPDX-License-Identifier: MIT
 """Terminal output of the commands: progress bars, stages and tables."""
 
+import json
+import os
+import signal
 import sys
+import threading
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+import weakref
+from collections.abc import Callable, Collection, Iterable, Iterator
+from concurrent.futures import Executor
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from typing import TypeVar
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -19,8 +27,12 @@ from rich.progress import (
 from rich.table import Table
 
 from passo.output import BROKEN_PIPE, drop_output
+from passo.toolchain import paths
 
 EVERY = 10  # seconds between two lines of progress
+LASTED = "durations.json"  # in the build folder: seconds of each stage, the last time
+S = TypeVar("S")
+T = TypeVar("T")
 
 
 class _Console(Console):
@@ -80,6 +92,48 @@ def progress(name: str, total: float) -> Iterator[Callable[[float], None]]:
         yield report
 
 
+def each(name: str, items: Collection[T]) -> Iterator[T]:
+    """The items, with the progress of the work between them."""
+    with progress(name, len(items)) as report:
+        for count, item in enumerate(items, 1):
+            yield item
+            report(count)
+
+
+@dataclass
+class Work:
+    """Whether Ctrl-C has ended it."""
+
+    canceled: bool = False
+
+
+@contextmanager
+def cancelable() -> Iterator[Work]:
+    """A work that Ctrl-C ends; what follows shows what is done so far."""
+    work = Work()
+    try:
+        yield work
+    except KeyboardInterrupt:
+        work.canceled = True
+        print("canceled: what follows is what was done until then", file=sys.stderr, flush=True)
+
+
+def leave_interrupts() -> None:
+    """In a worker of a pool: Ctrl-C is for the process that waits."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def in_turn(pool: Executor, work: Callable[[S], T], items: Iterable[S]) -> Iterator[T]:
+    """The results of a pool in the order of the items; what has not begun is dropped where this is left."""
+    waiting = [pool.submit(work, item) for item in items]
+    try:
+        for one in waiting:
+            yield one.result()
+    finally:
+        for one in waiting:
+            one.cancel()
+
+
 @contextmanager
 def passing(name: str, seconds: float | None = None) -> Iterator[Callable[[float], None]]:
     """The same for simulated seconds, of which the total may be unknown."""
@@ -112,15 +166,68 @@ def _bar(name: str, total: float | None, *columns: ProgressColumn) -> Iterator[t
         yield bar, bar.add_task(name, total=total)
 
 
+class Stages:
+    """Prints a line for each stage of a work, with the time elapsed since its begin.
+
+    While a stage lasts, every `EVERY` seconds a line on standard error, with what is left if it takes as long
+    as the last time.
+    """
+
+    def __init__(self) -> None:
+        self.began = self.since = time.monotonic()
+        self.stage = ""
+        self._ended = threading.Event()
+        weakref.finalize(self, self._ended.set)
+
+    def __call__(self, words: str) -> None:
+        """A stage begins."""
+        now = time.monotonic()
+        if self.stage:
+            _remember(self.stage, now - self.since)
+        else:
+            threading.Thread(target=_beat, args=(weakref.ref(self), self._ended), daemon=True).start()
+        self.stage, self.since = words, now
+        print(f"[{_minutes(now - self.began).rjust(6)}] {words}", flush=True)
+
+    def lasts(self) -> str:
+        """Such as `synthesis: 0:20, 1:05 left`, or `synthesis: 0:20` when nothing is known of it."""
+        passed = time.monotonic() - self.since
+        left = _durations().get(self.stage, 0) - passed
+        return f"{self.stage}: {_minutes(passed)}" + (f", {_minutes(left)} left" if left > 0 else "")
+
+
 def stages() -> Callable[[str], None]:
-    """Return a function that prints a line with the time elapsed since now."""
-    began = time.monotonic()
+    """Return a function that prints a line for each stage; see Stages."""
+    return Stages()
 
-    def tell(words: str) -> None:
-        minutes, seconds = divmod(int(time.monotonic() - began), 60)
-        print(f"[{minutes:3}:{seconds:02}] {words}", flush=True)
 
-    return tell
+def _beat(of: "weakref.ref[Stages]", ended: threading.Event) -> None:
+    while not ended.wait(EVERY):
+        if stage := of():
+            print(stage.lasts(), file=sys.stderr, flush=True)
+        del stage
+
+
+def _minutes(seconds: float) -> str:
+    minutes, rest = divmod(int(seconds), 60)
+    return f"{minutes}:{rest:02}"
+
+
+def _durations() -> dict[str, float]:
+    with suppress(OSError, ValueError):
+        return dict(json.loads((paths.build / LASTED).read_text(encoding="utf-8")))
+    return {}
+
+
+def _remember(stage: str, seconds: float) -> None:
+    """Keep how long a stage lasted, if it was long enough to ask."""
+    if seconds < EVERY:
+        return
+    file = paths.build / LASTED
+    with suppress(OSError):
+        own = file.with_name(f"{LASTED}.{os.getpid()}")
+        own.write_text(json.dumps(_durations() | {stage: round(seconds, 1)}), encoding="utf-8")
+        own.replace(file)
 
 
 def table(title: str, first: str, *columns: str) -> Table:

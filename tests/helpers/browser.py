@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, Self
 
 PROGRAM = "chromium-headless-shell"
+KEYS = {"Enter": (13, "\r"), "Escape": (27, ""), "ArrowLeft": (37, ""), "ArrowRight": (39, "")}  # code, text
 
 
 @dataclass
@@ -83,14 +84,18 @@ class Browser:
         assert "exceptionDetails" not in answer, answer["exceptionDetails"]
         return answer["result"].get("value")
 
-    def drag(self, selector: str, begin: float, end: float) -> None:
-        """Drag the mouse over an element, between two parts of its width."""
-        box = self.value(
+    def _box(self, selector: str) -> list[float]:
+        """Left, top, width and height of an element, which is scrolled into view."""
+        box: list[float] = self.value(
             f"(() => {{ const e = document.querySelector({json.dumps(selector)});"
             "e.scrollIntoView({block: 'center'}); const b = e.getBoundingClientRect();"
             "return [b.left, b.top, b.width, b.height]; })()"
         )
-        left, top, width, height = box
+        return box
+
+    def drag(self, selector: str, begin: float, end: float) -> None:
+        """Drag the mouse over an element, between two parts of its width."""
+        left, top, width, height = self._box(selector)
         for kind, part in (
             ("mouseMoved", begin),
             ("mousePressed", begin),
@@ -102,6 +107,27 @@ class Browser:
                 type=kind, x=left + part * width, y=top + height / 2, clickCount=1,
                 button="none" if kind == "mouseMoved" and part == begin else "left", buttons=1,
             )  # fmt: skip
+
+    def press(self, key: str, ctrl: bool = False) -> None:
+        """Press and release a key of KEYS, or a character, where the focus is, as a person does."""
+        code, text = KEYS.get(key, (ord(key[0]), key))
+        for kind in ("keyDown", "keyUp"):
+            self._call(
+                "Input.dispatchKeyEvent", type=kind, key=key, code=key, windowsVirtualKeyCode=code, text=text,
+                modifiers=2 if ctrl else 0,
+            )  # fmt: skip
+
+    def touch(self, selector: str, *moments: list[float]) -> None:
+        """Touch an element with fingers; where they are at each moment, as parts of its width."""
+        left, top, width, height = self._box(selector)
+        for number, fingers in enumerate(moments):
+            points = [
+                {"x": left + part * width, "y": top + height / 2, "id": finger}
+                for finger, part in enumerate(fingers)
+            ]
+            kind = "touchMove" if number else "touchStart"
+            self._call("Input.dispatchTouchEvent", type=kind, touchPoints=points)
+        self._call("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
 
     @contextmanager
     def tasks(self) -> Iterator[Tasks]:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, Self
 
 PROGRAM = "firefox-esr"
+KEYS = {"Enter": "\ue007", "Escape": "\ue00c", "ArrowLeft": "\ue012", "ArrowRight": "\ue014"}
 START = 60  # seconds
 PREFERENCES = {"marionette.port": 0, "browser.shell.checkDefaultBrowser": False, "app.update.enabled": False}
 ANSWER = (
@@ -67,6 +68,14 @@ class Firefox:
         answer = self._call("WebDriver:ExecuteAsyncScript", script=ANSWER, args=[script], sandbox=None)
         assert "error" not in answer["value"], answer["value"]
         return answer["value"].get("value")
+
+    def press(self, key: str, ctrl: bool = False) -> None:
+        """Press and release a key of KEYS, or a character, where the focus is, as a person does."""
+        own = KEYS.get(key, key)
+        keys = ["\ue009", own] if ctrl else [own]
+        actions = [{"type": "keyDown", "value": own} for own in keys]
+        actions += [{"type": "keyUp", "value": own} for own in reversed(keys)]
+        self._call("WebDriver:PerformActions", actions=[{"type": "key", "id": "keys", "actions": actions}])
 
     def _call(self, method: str, **params: Any) -> Any:
         self._number += 1

@@ -9,10 +9,13 @@ import re
 import shutil
 import subprocess
 import sys
+import time
+from concurrent.futures import ThreadPoolExecutor, wait
 from pathlib import Path
 
 from passo.cache import hash_of
 from passo.compiler import compile_to, headers, includes, sources
+from passo.console import progress
 from passo.toolchain import paths
 
 CLANG = "clang"
@@ -69,7 +72,13 @@ def fuzz(seconds: int, kept: Path) -> subprocess.CompletedProcess[str]:
 
 def main() -> int:
     """The command."""
-    done = fuzz(int(sys.argv[1]) if len(sys.argv) > 1 else 3600, KEPT)
+    seconds = int(sys.argv[1]) if len(sys.argv) > 1 else 3600
+    began = time.monotonic()
+    with ThreadPoolExecutor(1) as pool, progress("fuzzing", seconds) as report:
+        running = pool.submit(fuzz, seconds, KEPT)
+        while not wait([running], timeout=1).done:
+            report(time.monotonic() - began)
+    done = running.result()
     print("\n".join(done.stderr.splitlines()[-40:]))
     return done.returncode
 

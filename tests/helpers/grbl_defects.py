@@ -12,6 +12,7 @@ import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
+from passo.console import each
 from passo.planted import plant
 from passo.toolchain import BUILD_VARIABLE, paths
 
@@ -77,7 +78,7 @@ def main() -> int:
     """Plant them, one after the other."""
     chosen = [defect for defect in defects() if defect.name in sys.argv[1:] or not sys.argv[1:]]
     copy, missed = Copy(paths.build / "grbl_defects"), 0
-    for defect in chosen:
+    for defect in each("defects", chosen):
         green = copy.status(defect.test) == PASSED
         caught = green and copy.catches(defect)
         missed += not caught

@@ -8,13 +8,13 @@ import argparse
 import re
 import subprocess
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 
 from passo.build import WHOLE, Parameters, engine_sources
 from passo.cache import cached
 from passo.compiler import STRICT, compile_to, headers, includes, sources
+from passo.console import cancelable, progress
 from passo.engine import model_engine
 from passo.toolchain import paths
 from passo_stm32.grbl_board import GrblBoard, grbl_elf
@@ -24,7 +24,6 @@ from tests.helpers.grbl_judge import STEPS_PER_MM, FindingError, judge
 
 FOLDERS = (paths.grbl, paths.driver, paths.gcode, paths.planner, paths.protocol, paths.core)
 BATCH = 20  # histories of a process
-TOLD = 200  # histories from one message to the next
 BOARD_HZ = 36_000_000
 BAUD = 1_000_000
 PATIENCE = 30  # seconds until all is answered
@@ -165,15 +164,16 @@ def main() -> int:
         play = lambda history: play_on_model(made, [history])[0]  # noqa: E731
         batches = (seeds[at : at + BATCH] for at in range(0, len(seeds), BATCH))
         logs = (log for batch in batches for log in play_on_model(made, [made_of(seed) for seed in batch]))
-    failed, began = 0, time.monotonic()
-    for number, (seed, log) in enumerate(zip(seeds, logs, strict=True), 1):
-        if finding(log, options.board):
-            failed += 1
-            print(f"history {seed}: {examine(play, made_of(seed), options.board)}", flush=True)
-        if number % TOLD == 0:
-            print(f"{number} played, {failed} with a finding, {time.monotonic() - began:.0f} s", flush=True)
-    print(f"{options.count - failed} of {options.count} histories from {options.seed} on without a finding")
-    return int(failed > 0)
+    failed = done = 0
+    with cancelable() as work, progress("histories", options.count) as report:
+        for seed, log in zip(seeds, logs, strict=True):
+            if finding(log, options.board):
+                failed += 1
+                print(f"history {seed}: {examine(play, made_of(seed), options.board)}", flush=True)
+            done += 1
+            report(done)
+    print(f"{done - failed} of {done} histories from {options.seed} on without a finding")
+    return int(failed > 0 or work.canceled)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""The commands that README and documents show, and a folder to run them in."""
+"""The commands that README and documents show, and a folder to run them in.
+
+In blocks of shell, each command of a line; in README and tutorial also those in the text.
+"""
 
 import re
 import shlex
@@ -12,8 +15,11 @@ from passo.toolchain import environment, paths
 
 PAGES = (paths.root / "README.md", *sorted(paths.docs.glob("*.md")))
 TUTORIAL = paths.docs / "tutorial.md"
-BLOCKS = re.compile(r"^```(sh|toml)\n(.*?)^```", re.S | re.M)
-COMMAND = re.compile(r"^(?:\.venv/bin/)?(passo|make) [^#&\n]*", re.M)
+BLOCKS = re.compile(r"^```(\w*)\n(.*?)^```", re.S | re.M)
+COMMENT = re.compile(r"(?:^|\s)#.*", re.M)
+NEXT = re.compile(r"\n|&&|&")  # between two commands
+PROGRAMS = ("passo", "make", "pip", "python", "sh", "source", "gtkwave", "docker", "tools/setup.sh")
+IN_TEXT = re.compile(rf"`((?:\.venv/bin/)?(?:{'|'.join(PROGRAMS)})(?: [^`]+)?)`")
 LINES = "help\n"  # for the console
 
 
@@ -33,19 +39,26 @@ class Shown:
         """Of the command."""
         return shlex.split(self.command.removeprefix(".venv/bin/"))
 
+    @property
+    def program(self) -> str:
+        """Its first word."""
+        return self.words[0]
 
-def shown(pages: tuple[Path, ...] = PAGES) -> list[Shown]:
-    """Of these pages; a command that a page shows twice is one."""
+
+def shown(pages: tuple[Path, ...] = PAGES, in_text: bool = False) -> list[Shown]:
+    """Of the blocks of these pages, and of their text if asked for; what a page shows twice is one."""
     (tutorial,) = (text for kind, text in BLOCKS.findall(TUTORIAL.read_text()) if kind == "toml")
     found = []
     for page in pages:
-        moves = tutorial
-        for kind, text in BLOCKS.findall(page.read_text(encoding="utf-8")):
+        moves, whole = tutorial, page.read_text(encoding="utf-8")
+        for kind, text in BLOCKS.findall(whole):
             if kind == "toml" and "[[move]]" in text and "clock_hz" in text:
                 moves = text
             elif kind == "sh":
-                found += [Shown(page, match[0].strip(), moves) for match in COMMAND.finditer(text)]
-    return list({str(one): one for one in found}.values())
+                found += [Shown(page, one.strip(), moves) for one in NEXT.split(COMMENT.sub("", text))]
+        if in_text:
+            found += [Shown(page, one, moves) for one in IN_TEXT.findall(BLOCKS.sub("", whole))]
+    return list({str(one): one for one in found if one.command}.values())
 
 
 def run(one: Shown, folder: Path) -> subprocess.CompletedProcess[str]:

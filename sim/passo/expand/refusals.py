@@ -85,7 +85,7 @@ SAID = {
     11: ("", "write at most 127 characters, not counting blanks and comments"),
     20: ("[LR].*|O.*|G.*|M.*", "write another value, or another command"),
     21: ("[GM].*", "write one of the two, or two lines"),
-    22: ("G.*|[XYZABC].*", "write F before, in units per minute"),
+    22: ("G.*|[XYZABC].*", "write F with the first motion, such as G1 X1 F600, and in G93 with each"),
     23: ("[GM].*", "write the number of a command that there is"),
     24: ("G.*", "write two lines"),
     25: ("[^GM].*", "write it once"),

@@ -17,6 +17,18 @@ function hasOnlySubroutines({ given, text }) {
     return own;
 }
 
+const MOVE_FILE = /^\s*\[\[\s*move\s*\]\]/m;
+const OF_MOVE_FILE = ["clock_hz", "pins", "move"];  // that the page knows
+
+// A move file as lines of the console, with its clock; throws for what they do not say.
+function linesOfMoves(text) {
+    const table = Toml.read(text), other = [...table.keys()].find(key => !OF_MOVE_FILE.includes(key));
+    if (other !== undefined) throw new BadValue(`${other}: the page has no machines in move files: passo run plays it`);
+    const shown = value => (Array.isArray(value) ? value.map(shown).join(",") : value instanceof Written ? value.text : String(value).replaceAll(" ", ""));
+    const lines = table.get("move").map(move => ["move", ...[...move].map(([key, value]) => `${key}=${shown(value)}`)].join(" "));
+    return { lines: lines.join("\n"), hz: Number(table.get("clock_hz")), pins: table.has("pins") };
+}
+
 // A name without the number that tells files of one name apart, that number, and the name with another one.
 function numbered(name) {
     const [, stem, number = 1, end = ""] = /^(.*?)(?: \((\d+)\))?(\.[^.]*)?$/s.exec(name);

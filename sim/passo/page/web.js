@@ -176,6 +176,7 @@ class Form {
         const has = (file, end) => file.name.toLowerCase().endsWith(end), own = end => files.filter(file => has(file, end)).at(-1);
         const programs = files.filter(file => ![".toml", ".tbl", ".csv"].some(end => has(file, end)));
         const [machine, tools, map] = [".toml", ".tbl", ".csv"].map(own);
+        if (machine && MOVE_FILE.test(await machine.text())) return this.openMoves(machine);
         if (machine) await this.openMachine(machine);
         if (tools) by("tools").value = await tools.text();
         if (map) by("map").value = await map.text();
@@ -187,6 +188,19 @@ class Form {
             this.say(`${what}: ${grouped(lines)} lines${this.whole ? ", of which the first are shown" : ""}`);
         }
         return this.run();
+    }
+
+    async openMoves(file) {
+        try {
+            const { lines, hz, pins } = linesOfMoves(await textOf(file));
+            if (!CLOCKS.includes(hz)) throw new BadValue(`clock_hz: the page has ${CLOCKS.map(own => grouped(own)).join(", ")}`);
+            this.put(lines, CONSOLE);
+            by("clock").value = hz;
+            await this.run();
+            if (pins) this.say(`${file.name}: without its [pins]`);
+        } catch (error) {
+            this.say(`${file.name}: ${error.message}`);
+        }
     }
 
     async openMachine(file) {
