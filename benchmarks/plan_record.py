@@ -8,6 +8,7 @@ alter the record; of any other change, it says which paths and moves became fast
 judge: a wrong plan can be on record.
 """
 
+import cmath
 import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -39,6 +40,7 @@ MOVES = 240  # random move files
 DIGITS = 12  # of a hash
 SHOWN = 40  # changes
 PACE = (16, 32, 8)  # ramps and lines that a core holds, and lines of a frame
+LITTLE = (2, 4, 2)  # the same of a very small one
 PROFILES = ("linear", "cosine", "sigmoid", "jerk")
 SMOOTH = PathSettings((PathAxis(jerk=20_000), PathAxis(jerk=20_000), PathAxis(50, 100, 300, jerk=6000)))
 PATHS: dict[str, Callable[[], Sequence[Line]]] = {
@@ -48,6 +50,15 @@ PATHS: dict[str, Callable[[], Sequence[Line]]] = {
     "letters": lambda: text("PASSO"),
     "trochoid": lambda: trochoid(4, 2, chords=36),
 }
+
+
+def _behind(count: int, chord: float, bend: float) -> list[Line]:
+    """Short lines behind a long one, each turned by an angle in radians."""
+    place, lines = complex(30), [((30.0, 0.0, 0.0), 100.0)]
+    for number in range(1, count + 1):
+        place += cmath.rect(chord, number * bend)
+        lines.append(((place.real, place.imag, 0.0), 100.0))
+    return list(lines)
 
 
 @dataclass(frozen=True)
@@ -74,6 +85,12 @@ def of_path(
     clocks = sum(ramp.ticks for ramp in made.ramps) << made.path.parameters.tick_log2
     words = [(ramp.shape, ramp.mirror, ramp.progress_step, ramp.last) for ramp in made.ramps]
     return Entry(clocks, len(made.ramps), _hash([made.words, words]))
+
+
+def _paced(
+    lines: Callable[[], Sequence[Line]], settings: PathSettings, look_ahead: int, pace: tuple[int, int, int]
+) -> Entry:
+    return of_path(lines(), settings, look_ahead, pace)
 
 
 def _channels(number: int) -> Channels | None:
@@ -116,10 +133,13 @@ def entries() -> dict[str, Callable[[], Entry]]:
             settings = replace(SMOOTH, profile=profile)
             add(f"{name}, {profile}", lines, settings, LOOK_AHEAD)
             for polls in (100, 1000):
-                found[f"{name}, {profile}, {polls} polls"] = partial(
-                    lambda lines, *others: of_path(lines(), *others),
-                    *(lines, replace(settings, polls=polls), LOOK_AHEAD, PACE),
-                )
+                slow = replace(settings, polls=polls)
+                found[f"{name}, {profile}, {polls} polls"] = partial(_paced, lines, slow, LOOK_AHEAD, PACE)
+    for chord, bend in ((0.02, 0.002), (0.05, 0.02), (0.005, 0.01), (0.2, 0.01)):
+        for polls in (20, 50, 100):
+            found[f"chords of {chord} mm, turned by {bend}, {polls} polls"] = partial(
+                _paced, partial(_behind, 300, chord, bend), replace(SMOOTH, polls=polls), 8, LITTLE
+            )
     for number, path in enumerate(wanderings(12, seed=3)):
         profile, tolerance = PROFILES[number % len(PROFILES)], Fraction(number % 3, 100)
         settings = replace(SMOOTH, profile=profile, tolerance=tolerance)

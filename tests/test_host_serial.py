@@ -108,7 +108,7 @@ def test_homing(at: Callable[..., tuple[Machine, Firmware]], text: str) -> None:
 
 
 def test_other_tasks_go_on(at: Callable[..., tuple[Machine, Firmware]]) -> None:
-    """Hold, resume, override and stop while a motion is awaited; then it goes on from there."""
+    """Hold, resume, override and stop while a motion is awaited; then it continues from there."""
     machine, firmware = at(PLAIN)
     clock = firmware.engine.__class__.clock.fget  # type: ignore[attr-defined]
 
