@@ -2,7 +2,6 @@
 """Terminal output of the commands: progress bars, stages and tables."""
 
 import json
-import os
 import signal
 import sys
 import threading
@@ -26,7 +25,8 @@ from rich.progress import (
 )
 from rich.table import Table
 
-from passo.output import BROKEN_PIPE, drop_output
+from passo.failure import BadInputError, Failure
+from passo.output import BROKEN_PIPE, drop_output, write_json
 from passo.toolchain import paths
 
 EVERY = 10  # seconds between two lines of progress
@@ -223,11 +223,8 @@ def _remember(stage: str, seconds: float) -> None:
     """Keep how long a stage lasted, if it was long enough to ask."""
     if seconds < EVERY:
         return
-    file = paths.build / LASTED
-    with suppress(OSError):
-        own = file.with_name(f"{LASTED}.{os.getpid()}")
-        own.write_text(json.dumps(_durations() | {stage: round(seconds, 1)}), encoding="utf-8")
-        own.replace(file)
+    with suppress(BadInputError, Failure):
+        write_json(_durations() | {stage: round(seconds, 1)}, paths.build / LASTED)
 
 
 def table(title: str, first: str, *columns: str) -> Table:
