@@ -37,7 +37,10 @@ def test_unknown_variables(arguments: tuple[str, ...], said: str) -> None:
     ("arguments", "said"),
     [
         (("GRBL=1", "MACHINE=-DHOME=7"), "MACHINE: unknown definition HOME; did you mean HOMES?"),
-        (("GRBL=1", "MACHINE=-DAXES=3 -DX=1"), "MACHINE: unknown definition X; must be one of AT_SPEED, AXES, "),
+        (
+            ("GRBL=1", "MACHINE=-DAXES=3 -DX=1"),
+            "MACHINE: unknown definition X; must be one of AT_SPEED, AXES, ",
+        ),
         (("GRBL=1", "MACHINE=AXES=3"), "MACHINE has AXES=3, which is not of the form -DNAME=VALUE"),
         (("MACHINE=-DAXES=3",), "MACHINE needs GRBL=1 or CHIP=cb"),
         (("CHIP=cb", "MACHINE=-DHOME=7"), "MACHINE: unknown definition HOME; did you mean HOMES?"),
