@@ -21,10 +21,14 @@ class Planned:
     words: list[int]  # of all of them, in the order in which they were handed out
 
     @property
-    def seconds(self) -> float:
+    def clocks(self) -> int:
         """Duration of all ramps."""
-        ticks = sum(ramp.ticks for ramp in self.ramps)
-        return (ticks << self.path.parameters.tick_log2) / self.path.settings.clock_hz
+        return sum(ramp.ticks for ramp in self.ramps) << self.path.parameters.tick_log2
+
+    @property
+    def seconds(self) -> float:
+        """The same."""
+        return self.clocks / self.path.settings.clock_hz
 
 
 def plan(

@@ -20,7 +20,7 @@ from pathlib import Path
 from passo.campaign_moves import draw, to_toml
 from passo.console import console
 from passo.move_file import parse_channels
-from passo.moves import Channels, MoveFileError
+from passo.moves import MoveFileError
 from passo.output import write_text
 from passo.path import PathAxis, PathSettings
 from passo.path_rounding import Line
@@ -54,11 +54,12 @@ PATHS: dict[str, Callable[[], Sequence[Line]]] = {
 
 def _behind(count: int, chord: float, bend: float) -> list[Line]:
     """Short lines behind a long one, each turned by an angle in radians."""
-    place, lines = complex(30), [((30.0, 0.0, 0.0), 100.0)]
+    place = complex(30)
+    lines: list[Line] = [((place.real, 0.0, 0.0), 100.0)]
     for number in range(1, count + 1):
         place += cmath.rect(chord, number * bend)
         lines.append(((place.real, place.imag, 0.0), 100.0))
-    return list(lines)
+    return lines
 
 
 @dataclass(frozen=True)
@@ -82,49 +83,39 @@ def of_path(
 ) -> Entry:
     """A path, fed as fast as it is planned, or for a feed with these arguments of passo_path_pace()."""
     made = plan(lines, settings, look_ahead, pace=pace)
-    clocks = sum(ramp.ticks for ramp in made.ramps) << made.path.parameters.tick_log2
     words = [(ramp.shape, ramp.mirror, ramp.progress_step, ramp.last) for ramp in made.ramps]
-    return Entry(clocks, len(made.ramps), _hash([made.words, words]))
-
-
-def _paced(
-    lines: Callable[[], Sequence[Line]], settings: PathSettings, look_ahead: int, pace: tuple[int, int, int]
-) -> Entry:
-    return of_path(lines(), settings, look_ahead, pace)
-
-
-def _channels(number: int) -> Channels | None:
-    """Of a random move file, unless it is a bad one."""
-    case = draw(1, number)
-    table = table_text(case.table) if case.table else ""
-    try:
-        return parse_channels(to_toml(case.data), Path(f"{case.name}.toml"), lambda p: parse_table(table, p))
-    except MoveFileError:
-        return None
+    return Entry(made.clocks, len(made.ramps), _hash([made.words, words]))
 
 
 def of_moves(number: int) -> Entry:
     """The moves of a random file; a refusal has no ramps."""
-    channels = _channels(number)
-    if channels is None:
-        return Entry(0, 0, "bad file")
+    case = draw(1, number)
+    table = table_text(case.table) if case.table else ""
     try:
+        channels = parse_channels(
+            to_toml(case.data), Path(f"{case.name}.toml"), lambda path: parse_table(table, path)
+        )
         plans = [one for own in plan_channels(channels, parameters_of(channels)) for one in own]
     except MoveFileError as error:
         return Entry(0, 0, _hash([str(error)]))
     lines = [(one.line.substeps, one.line.directions, list(one.line.steps), one.table) for one in plans]
     ramps = [(r.ticks, r.shape, r.mirror, r.velocity_end, r.progress_step) for p in plans for r in p.ramps]
-    return Entry(
-        sum(one.clocks for one in plans), sum(len(one.ramps) for one in plans), _hash([lines, ramps])
-    )
+    return Entry(sum(one.clocks for one in plans), len(ramps), _hash([lines, ramps]))
 
 
 def entries() -> dict[str, Callable[[], Entry]]:
     """What is recorded, by name."""
     found: dict[str, Callable[[], Entry]] = {}
 
-    def add(name: str, lines: Callable[[], Sequence[Line]], settings: PathSettings, ahead: int) -> None:
-        found[f"{name}, {ahead} ahead"] = lambda: of_path(lines(), settings, ahead)
+    def add(
+        name: str,
+        lines: Callable[[], Sequence[Line]],
+        settings: PathSettings,
+        ahead: int,
+        pace: tuple[int, int, int] | None = None,
+    ) -> None:
+        how = f"{settings.polls} polls" if pace else f"{ahead} ahead"
+        found[f"{name}, {how}"] = lambda: of_path(lines(), settings, ahead, pace)
 
     for name, case in read_cases(path_adversary.WORST).items():
         add(name, partial(getattr, case, "lines"), case.settings, case.look_ahead)
@@ -133,13 +124,12 @@ def entries() -> dict[str, Callable[[], Entry]]:
             settings = replace(SMOOTH, profile=profile)
             add(f"{name}, {profile}", lines, settings, LOOK_AHEAD)
             for polls in (100, 1000):
-                slow = replace(settings, polls=polls)
-                found[f"{name}, {profile}, {polls} polls"] = partial(_paced, lines, slow, LOOK_AHEAD, PACE)
+                add(f"{name}, {profile}", lines, replace(settings, polls=polls), LOOK_AHEAD, PACE)
     for chord, bend in ((0.02, 0.002), (0.05, 0.02), (0.005, 0.01), (0.2, 0.01)):
         for polls in (20, 50, 100):
-            found[f"chords of {chord} mm, turned by {bend}, {polls} polls"] = partial(
-                _paced, partial(_behind, 300, chord, bend), replace(SMOOTH, polls=polls), 8, LITTLE
-            )
+            lines = partial(_behind, 300, chord, bend)
+            name = f"chords of {chord} mm, turned by {bend}"
+            add(name, lines, replace(SMOOTH, polls=polls), 8, LITTLE)
     for number, path in enumerate(wanderings(12, seed=3)):
         profile, tolerance = PROFILES[number % len(PROFILES)], Fraction(number % 3, 100)
         settings = replace(SMOOTH, profile=profile, tolerance=tolerance)

@@ -14,7 +14,7 @@ from typing import ClassVar, Protocol, Self
 from passo.failure import BadInputError, Failure
 
 RESET, REPORT = b"\x18", b"?"
-GREETING = "Grbl "
+GREETING, STATUS = "Grbl ", r"<.*?>"
 READ = 4096
 
 
@@ -42,37 +42,31 @@ class Conversation:
     def __init__(self, port: Line):
         self.port = port
 
-    def line(self, text: str) -> str:
-        """Send a line; return what is said before its answer."""
-        self.port.write(text.encode() + b"\n")
+    def _ask(self, data: bytes, answer: str, lacking: str) -> tuple[str, re.Match[str]]:
+        """Send bytes; return what is said until it has the answer, and that."""
+        self.port.write(data)
         said = ""
         for _ in range(round(self.ANSWER / self.LOOK)):
             said += self.port.read(self.LOOK)
-            if found := re.search(r"^(ok|error:\d+)\r?$", said, re.M):
-                if found[1] != "ok":
-                    raise Failure(f"{text} was refused: {found[1]} (docs/gcode.md)")
-                return said[: found.start()]
-        raise Failure(f"no answer to {text}: is it the grbl image, at 115200 baud?")
+            if found := re.search(answer, said, re.M):
+                return said, found
+        raise Failure(f"{lacking}: is it the grbl image, at 115200 baud?")
+
+    def line(self, text: str) -> str:
+        """Send a line; return what is said before its answer."""
+        said, found = self._ask(text.encode() + b"\n", r"^(ok|error:\d+)\r?$", f"no answer to {text}")
+        if found[1] != "ok":
+            raise Failure(f"{text} was refused: {found[1]} (docs/gcode.md)")
+        return said[: found.start()]
 
     def restart(self) -> None:
         """Reset the protocol, and wait for its greeting: bytes before it are dropped."""
-        self.port.write(RESET)
-        said = ""
-        for _ in range(round(self.ANSWER / self.LOOK)):
-            said += self.port.read(self.LOOK)
-            if GREETING in said:
-                return
-        raise Failure("no greeting: is it the grbl image, at 115200 baud?")
+        self._ask(RESET, GREETING, "no greeting")
 
     def report(self) -> dict[str, str]:
-        """A status report, by its fields."""
-        self.port.write(REPORT)
-        said = ""
-        for _ in range(round(self.ANSWER / self.LOOK)):
-            said += self.port.read(self.LOOK)
-            if found := re.findall(r"<.*?>", said):
-                return self.fields(found[-1])
-        raise Failure("no status report: is it the grbl image, at 115200 baud?")
+        """A status report, by its fields: the last one that is heard."""
+        said, _ = self._ask(REPORT, STATUS, "no status report")
+        return self.fields(re.findall(STATUS, said)[-1])
 
     @staticmethod
     def fields(report: str) -> dict[str, str]:

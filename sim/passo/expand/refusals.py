@@ -47,22 +47,26 @@ LETTERS = {
     "V": "LinuxCNC: an axis beside Y",
     "W": "LinuxCNC: an axis beside Z",
 }
+
+
+def _by_word(groups: dict[str, str]) -> dict[str, str]:
+    """What is said of each word, from the words of which it is said."""
+    return {word: said for said, words in groups.items() for word in words.split()}
+
+
 # The same of words that it has, for those that are not of NIST alone; docs/gcode.md has the table.
-NORMS = {
-    word: norm
-    for norm, words in {
+NORMS = _by_word(
+    {
         "LinuxCNC": "G7 G8 G33 G33.1 G43 G43.1 G43.2 G49 G61 G61.1 G64 G96 G97 M62 M63 M64 M65 M66 M67 M68",
         "NIST, LinuxCNC": "G73 G81 G82 G83 G85 G86 G89 M6 M61",
         "grbl, LinuxCNC": "G10 G28 G28.1 G30 G30.1 G38.2 G38.3 G38.4 G38.5 G91.1 G93 G94 G95",
         "grbl": "G20 G21 G53 G80 M0 M1 M2 M30 F S T N D E H I J K R L P Q",
-    }.items()
-    for word in words.split()
-}
+    }
+)
 NIST = "NIST"  # of all others
 # The letters that commands need.
-NEEDED = {
-    command: letters
-    for letters, commands in {
+NEEDED = _by_word(
+    {
         "P": "G4 M62 M63 M64 M65",
         "L and P": "G10",
         "P, and Q if L is not 0": "M66",
@@ -73,9 +77,8 @@ NEEDED = {
         "H": "G43.2",
         "Q": "M61",
         "S": "G96",
-    }.items()
-    for command in commands.split()
-}
+    }
+)
 # By error: kinds of words that it may be about, in this order, of which one is named without which the line
 # is right, or has another error, or else the first; and what to do.
 SAID = {
