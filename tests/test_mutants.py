@@ -245,9 +245,11 @@ def test_the_tests_kill_mutants_in_c(tmp_path: Path) -> None:
 
 def test_the_page_keeps_what_was_not_played(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Rows and survivors stay until as many mutants have been played again."""
-    kept = tmp_path / "mutants.md"
+    kept, quoted = tmp_path / "mutants.md", tmp_path / "modules.md"
     kept.write_text(f"# Figures\n\n{page.BEGIN}{page.END}")
     monkeypatch.setattr(page, "PAGE", kept)
+    monkeypatch.setattr(page.modules_page, "MUTANTS", kept)
+    monkeypatch.setattr(page.modules_page, "PAGE", quoted)
     played = page.Score(
         "passo_axis", 4, {"pins": 2, "proofs": 1}, living=[("passo_axis: inv, a.v:1", "dull")]
     )
@@ -266,3 +268,5 @@ def test_the_page_keeps_what_was_not_played(tmp_path: Path, monkeypatch: pytest.
         and "passo_axis: inv" not in after
     )
     assert "* passo_math.c a &lt; b \\| c" in after
+    axis = next(line for line in quoted.read_text().splitlines() if line.startswith("| `passo_axis`"))
+    assert axis.endswith(" 100% |")

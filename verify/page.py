@@ -14,6 +14,7 @@ from verify.equal.coupling import couplings
 from verify.formal.run import Proof, proofs
 
 PAGE = paths.reference / "modules.md"
+MUTANTS = paths.reference / "mutants.md"
 TEMPLATE = paths.root / "verify" / "page.md"
 
 
@@ -27,8 +28,7 @@ def _reads(proof: Proof, module: str) -> bool:
 
 def _score(module: str) -> str:
     """From the page of mutants."""
-    text = (paths.reference / "mutants.md").read_text(encoding="utf-8")
-    found = re.search(rf"^\| `{module}` \|.* (\d+%) \|$", text, re.M)
+    found = re.search(rf"^\| `{module}` \|.* (\d+%) \|$", MUTANTS.read_text(encoding="utf-8"), re.M)
     return found[1] if found else ""
 
 
@@ -47,5 +47,10 @@ def page() -> str:
     return TEMPLATE.read_text(encoding="utf-8").replace("<!-- modules -->", "\n".join(rows))
 
 
-if __name__ == "__main__":
+def write() -> None:
+    """Write the page, whose scores are those of the page of mutants."""
     write_text(PAGE, page())
+
+
+if __name__ == "__main__":
+    write()

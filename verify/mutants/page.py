@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The score of every module and file, and docs/reference/mutants.md."""
+"""The score of every module and file; docs/reference/mutants.md, and modules.md, which quotes it."""
 
 import re
 import tomllib
@@ -11,6 +11,7 @@ from passo.console import console, table
 from passo.output import write_text
 from passo.toolchain import paths
 
+from verify import page as modules_page
 from verify.mutants.c_equal import NAME as OBJECT_CODE
 from verify.mutants.c_judge import RECORD
 from verify.mutants.c_source import FOLDERS, CMutant
@@ -204,7 +205,10 @@ BEGIN, END = "<!-- figures: written by make verify -->\n", "<!-- end of figures 
 
 
 def write(rtl: Sequence[Score], c: Sequence[Score], seed: int) -> None:
-    """Put the figures between the marks of the page; rows of what has not been played stay."""
+    """Put the figures between the marks of the page; rows of what has not been played stay.
+
+    The page of modules quotes the scores, so it is written too.
+    """
     head, rest = PAGE.read_text(encoding="utf-8").split(BEGIN)
     old, tail = rest.split(END)
     rows, _, survivors = old.partition("## Survivors")
@@ -213,6 +217,7 @@ def write(rtl: Sequence[Score], c: Sequence[Score], seed: int) -> None:
     rtl = _kept(_merged(rtl), _read(of_rtl + living_rtl, JUDGES))
     c = _kept(_merged(c), _read(of_c + living_c, C_JUDGES))
     write_text(PAGE, head + BEGIN + _figures(rtl, c, seed) + END + tail)
+    modules_page.write()
 
 
 def _figures(rtl: Sequence[Score], c: Sequence[Score], seed: int) -> str:
