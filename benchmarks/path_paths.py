@@ -106,7 +106,7 @@ class Case:
 
     def to_json(self) -> dict[str, Any]:
         """For a file of cases."""
-        return asdict(self)
+        return {key: value for key, value in asdict(self).items() if key != "grid" or value}
 
 
 def case_of(data: dict[str, Any]) -> Case:
