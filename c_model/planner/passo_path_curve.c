@@ -65,9 +65,6 @@ void passo_path_bend(const struct passo_path_planner *path, const int64_t *curva
 	for (uint32_t axis = 0; axis < passo_path_rows(path); axis++) {
 		const uint32_t share = passo_path_size32(unit[axis]);
 
-		/* it is the direction of a straight, of which the line may be a short part with another one */
-		if (PASSO_PATH_HALVES > 1 && curve->slope[axis] == 0)
-			continue;
 		if (curvature[axis] == 0 || share < SHARE_MIN)
 			continue;
 		const uint64_t bend =

@@ -25,8 +25,10 @@
 #define SAME_OFF 8u
 /* Several axes, and both lines beside an end, hide no more of what it is off than this. */
 #define SEEN 8u
-/* The corner at its start may become sharper by this part of its turn, squared: as the straight may be off, so
- * may what the corner is rounded to. */
+/* Both of a hundredth of a millimeter at most: it is rounded coordinates that make no corner, not a shape. */
+#define OFF_PER_MM 100u
+/* As the straight may be off, so may what the corner at its start is rounded to: by this part of that it may
+ * become sharper, of its turn, squared. */
 #define SHARPER 4u
 
 static struct passo_path_item *item_at(
@@ -75,6 +77,13 @@ static void bend_half(struct passo_path_planner *path, const struct passo_path_m
 	if (behind)
 		item->begun |= half > 0 ? 2u : 1u;
 	passo_path_bend(path, curvature, behind ? meeting->to : meeting->from, half, item);
+	/* a short line that is off the direction of its straight may have axes that hardly move in it */
+	for (uint32_t axis = 0; axis < passo_path_rows(path); axis++) {
+		const uint8_t others = (uint8_t) ~(item->curve.slope[axis] > 0 ? 0u : 1u << axis);
+
+		item->curve.helps[half] &= others;
+		item->curve.hinders[half] &= others;
+	}
 	passo_path_set_fall(item);
 	changes(path, index);
 }
@@ -269,6 +278,11 @@ static void round_start(
 	unsettle(path);
 }
 
+static uint64_t permitted(const struct passo_path_planner *path)
+{
+	return passo_path_smaller(path->deviation, ((uint64_t)path->substeps_per_mm << 16) / OFF_PER_MM);
+}
+
 /* By how much an axis may be off the straight at the start of an item, UQ32.16 substeps; a little is what the
  * last bits of targets in 2^-32 mm are. */
 static uint64_t may_be_off(const struct passo_path_planner *path, const struct passo_path_item *item)
@@ -276,7 +290,7 @@ static uint64_t may_be_off(const struct passo_path_planner *path, const struct p
 	const struct passo_path_item *last = passo_path_item(path, path->added - 1);
 	const bool same = last->feed == item->feed && last->rapid == item->rapid;
 
-	return path->deviation / (same ? SAME_OFF : OFF) + (path->substeps_per_mm >> 14); /* 2^-30 mm */
+	return permitted(path) / (same ? SAME_OFF : OFF) + (path->substeps_per_mm >> 14); /* 2^-30 mm */
 }
 
 /* Each end p of the straight, at the length s of it, limits the direction m of the whole, from its start to its
@@ -321,7 +335,10 @@ bool passo_path_goes_on(struct passo_path_planner *path, const struct passo_path
 	}
 	if (at->cornered) {
 		passo_path_find_turn(path, at->came, mean, &corner);
-		if (corner.turn - corner.turn / (SHARPER + 1) > at->turn_known)
+		const uint64_t sharper = passo_mul_div(
+		    at->turn_known, permitted(path) / SHARPER, passo_path_larger(path->deviation, 1));
+
+		if (corner.turn > at->turn_known + sharper)
 			return false;
 		at->turn_known = passo_path_smaller(at->turn_known, corner.turn);
 	}

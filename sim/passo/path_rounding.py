@@ -2,7 +2,7 @@
 """The rounding that a path permits, from geometry alone.
 
 Points near the line past them are no corners: within an eighth of the junction deviation `d`, and within
-half of it where the feed changes. A machine that goes along that line is off the points by as much. Any
+half of it where the feed changes, both of 0.01 mm at most; and within the tolerance of merging. A machine that goes along that line is off the points by as much. Any
 other corner turns the direction by `c`, the difference of two unit vectors.
 The arc that touches both lines and passes the corner at `d` has the radius `R = d s / (1 - s)`, `s` the
 sine of half the angle between the lines; while it turns it advances by `l = R |c|`. So the speed `v` at
@@ -32,6 +32,7 @@ STRAIGHT = 1e-7  # change of direction that is none
 SHARE = 1 / 20  # of the junction deviation: the tolerance of merging
 SAME_SHARE = 1 / 8  # by which a point may be off and still be no corner
 FEED_SHARE = 1 / 2  # the same where the feed changes
+MOST = 0.01  # mm: of which they are shares at most
 NEARLY = 1 - 1e-9
 SHORTEST = 1e-7  # mm: a line that is shorter is none
 
@@ -100,8 +101,9 @@ def points_of(
 
 def corners_of(points: np.ndarray, feed: np.ndarray, permitted: float) -> np.ndarray:
     """The points that are corners, with both ends: those between are near the line past them."""
-    off = np.full(len(points), permitted * SAME_SHARE)
-    off[1:-1][feed[1:] != feed[:-1]] = permitted * FEED_SHARE
+    most = min(permitted, MOST)
+    off = np.full(len(points), max(most * SAME_SHARE, permitted * SHARE))
+    off[1:-1][feed[1:] != feed[:-1]] = most * FEED_SHARE
     off = np.maximum(off, SHORTEST)
     kept, first, last = [0], 0, len(points) - 1
     while first < last:
