@@ -36,7 +36,7 @@ def seconds(lines: Sequence[Line], settings: PathSettings) -> float:
 @pytest.mark.parametrize("name", CORNERS)
 @pytest.mark.parametrize("heading", [17.0, 33.0])
 def test_coordinates_of_a_file_make_no_corner(name: str, heading: float) -> None:
-    """They take as long as exact ones; with inches, where the shape itself changes, as long as they have to."""
+    """They take as long as exact ones; in inches, which change the shape, as long as they have to."""
     exact = replace(CORNERS[name], heading=heading)
     file = replace(exact, grid=MM)
     assert seconds(file.lines, file.settings) < 1.02 * seconds(exact.lines, exact.settings)
@@ -60,9 +60,9 @@ def bent(off: float, feed: float) -> list[Line]:
     lines: list[Line] = []
     x = 0.0
     for sign in (1, -1) * 5:
-        lines += [((x + 0.38, off), 100.0), ((x + 0.4, 0.0), feed), ((x + 0.4, sign * 0.4), 100.0)]
-        lines += [((x + 0.78, sign * 0.4 + off), 100.0), ((x + 0.8, sign * 0.4), feed), ((x + 0.8, 0.0), 100.0)]
-        x += 0.8
+        for y in (0.0, sign * 0.4):
+            lines += [((x + 0.38, y + off), 100.0), ((x + 0.4, y), feed), ((x + 0.4, sign * 0.4 - y), 100.0)]
+            x += 0.4
     return lines
 
 

@@ -79,7 +79,7 @@ static void bend_half(struct passo_path_planner *path, const struct passo_path_m
 	passo_path_bend(path, curvature, behind ? meeting->to : meeting->from, half, item);
 	/* a short line that is off the direction of its straight may have axes that hardly move in it */
 	for (uint32_t axis = 0; axis < passo_path_rows(path); axis++) {
-		const uint8_t others = (uint8_t) ~(item->curve.slope[axis] > 0 ? 0u : 1u << axis);
+		const uint8_t others = (uint8_t)~(item->curve.slope[axis] > 0 ? 0u : 1u << axis);
 
 		item->curve.helps[half] &= others;
 		item->curve.hinders[half] &= others;
@@ -293,8 +293,8 @@ static uint64_t may_be_off(const struct passo_path_planner *path, const struct p
 	return permitted(path) / (same ? SAME_OFF : OFF) + (path->substeps_per_mm >> 14); /* 2^-30 mm */
 }
 
-/* Each end p of the straight, at the length s of it, limits the direction m of the whole, from its start to its
- * end: it is off by no more than what it may be, |p - s m|. */
+/* Each end p of the straight, at the length s of it, limits the direction m of the whole, from its start to
+ * its end: it is off by no more than what it may be, |p - s m|. */
 static void limit_mean(struct passo_path_planner *path, uint64_t off)
 {
 	struct passo_path_place *at = &path->at;

@@ -2,12 +2,13 @@
 """The rounding that a path permits, from geometry alone.
 
 Points near the line past them are no corners: within an eighth of the junction deviation `d`, and within
-half of it where the feed changes, both of 0.01 mm at most; and within the tolerance of merging. A machine that goes along that line is off the points by as much. Any
-other corner turns the direction by `c`, the difference of two unit vectors.
-The arc that touches both lines and passes the corner at `d` has the radius `R = d s / (1 - s)`, `s` the
-sine of half the angle between the lines; while it turns it advances by `l = R |c|`. So the speed `v` at
-the corner is at most `v^2 = a l / |c|` of every axis, `c` and `a` those of the axis: at constant speed
-the velocity changes evenly over `l`, and the path is off the corner by `|c| l / 8`, no more than `d`.
+half of it where the feed changes, both of 0.01 mm at most; and within the tolerance of merging. A machine
+that goes along that line is off the points by as much. Any other corner turns the direction by `c`, the
+difference of two unit vectors. The arc that touches both lines and passes the corner at `d` has the
+radius `R = d s / (1 - s)`, `s` the sine of half the angle between the lines; while it turns it advances
+by `l = R |c|`. So the speed `v` at the corner is at most `v^2 = a l / |c|` of every axis, `c` and `a`
+those of the axis: at constant speed the velocity changes evenly over `l`, and the path is off the corner
+by `|c| l / 8`, no more than `d`.
 
 Acceleration along the path comes on top. With it, the change of direction may take longer, as long as the
 path stays within `d` on either side of the lines: the direction turns over `p` before the corner and `q`
