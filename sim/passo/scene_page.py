@@ -50,7 +50,7 @@ def scene_data(channels: Channels, run: SceneRun, engine: str) -> tuple[dict[str
         "summary": summarize_scene(run, engine),
         "file": channels.path.name,
         "clock_hz": run.file.clock_hz,
-        "clocks": run.total_clocks,
+        "clocks": run.shown_clocks,
         "parameters": asdict(scene_parameters(channels)),
         "alpha_reset": 0,
         "runs": [
@@ -119,7 +119,7 @@ def _events(run: SceneRun) -> list[dict[str, Any]]:
         add(section.begin - run.start, f"move {moves} {begins}{task}", "" if run.moved(section) else "stop")
     for happened in run.events:
         if happened.clock is not None:
-            add(happened.clock - run.start, f"event {happened.number}: {said(happened)}")
+            add(happened.clock - run.start, f"{happened.name}: {said(happened)}")
     for stop in run.stops:
         where = ", ".join(map(str, stop.positions))
         add(stop.clock - run.start, f"stop {stop.cause.name} at {where}", "" if run.sought(stop) else "stop")
