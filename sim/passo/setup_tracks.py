@@ -88,7 +88,8 @@ def _track(
             if key not in table:
                 raise BadValueError(f"{key} is missing")
         track = replace(track, backlash=track.backlash or Place(Fraction(0)))
-        _check_limits(track, setup.core_axes, clock_hz)
+        assert track.speed is not None and track.acceleration is not None
+        check_limits(track.speed, track.acceleration, setup.core_axes, clock_hz)
         limits[track.axis] = number, track
         return track
     before, own = limits[track.axis]
@@ -104,20 +105,19 @@ def _within(key: str, place: Place, most: int) -> Place:
     return place
 
 
-def _check_limits(track: MachineTrack, axes: int, clock_hz: int) -> None:
-    """What passo_configure_tracker() would refuse."""
-    assert track.speed is not None and track.acceleration is not None
+def check_limits(top: Fraction, most_change: Fraction, axes: int, clock_hz: int) -> None:
+    """Raises BadValueError for what passo_configure_tracker() would refuse; steps/s, steps/s^2."""
     tick = tick_of(axes)
     rate = Fraction(clock_hz, tick)
-    if track.speed >= rate:
+    if top >= rate:
         raise BadValueError(f"speed must be less than {float(rate):g} steps/s, a step per {tick} clocks")
-    speed = q32(track.speed) * tick // clock_hz
-    acceleration = q32(track.acceleration) * tick // clock_hz * tick // clock_hz
+    speed = q32(top) * tick // clock_hz
+    acceleration = q32(most_change) * tick // clock_hz * tick // clock_hz
     if not acceleration:
         least = float(rate * rate / UNIT_Q32)
         raise BadValueError(f"acceleration must be at least {least:.3g} steps/s^2, or the core does not move")
     if acceleration > speed:
-        most = float(track.speed * rate)
+        most = float(top * rate)
         raise BadValueError(
             f"acceleration must be at most {most:g} steps/s^2: the speed within {tick} clocks"
         )
