@@ -9,10 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from passo import cli
+from passo import registers as r
 from passo.build import Parameters
 from passo.driver import Driver, DriverError
 from passo.engine import model_engine
 from passo.form_table import Place
+from passo.host import Channel, PinTiming
+from passo.link import Link
 from passo.move_file import read_channels
 from passo.move_forms import MachineTrack
 from passo.moves import MoveFileError
@@ -253,3 +256,22 @@ def test_bad_input(tmp_path: Path, text: str, message: str) -> None:
     with pytest.raises(MoveFileError, match=message) as raised:
         read_channels(write(tmp_path, text if MOVE in text else text + MOVE))
     assert "\n" not in str(raised.value)
+
+
+def test_a_position_that_was_read_is_not_in_the_status_of_the_next_frame() -> None:
+    """The address stands on the position of the next axis, which is not 0."""
+    parameters = Parameters(axes=3, inputs=1, encoders=1, outputs=1, trackers=1)
+    with open_engine("both", parameters, CLOCK_HZ) as engine:
+        channel = Channel(Link(engine), parameters)
+        link, base = channel.link, channel.base
+        for axis in range(3):
+            channel.configure_axis(axis, PinTiming(2, 2, 2, 2))
+            link.write(channel.axis_base(axis) + r.AXIS_TRACKER_SPEED, 1 << 30, 1 << 28)
+            link.write(base + r.CHANNEL_TRACKER_TARGET_BASE + axis, -5 - axis & 0xFFFFFFFF)
+        link.write(base + r.CHANNEL_TRACKER_ENABLE, 7)
+        engine.run(50_000)
+        for axis in range(3):
+            (position,) = link.read(base + r.CHANNEL_TRACKER_POSITION_BASE + axis, 1)
+            assert position == 0xFFFFFFFB - axis
+            engine.run(300)
+            assert channel.state().quiet
