@@ -95,11 +95,12 @@ def test_what_is_beside_the_path_is_found(both: tuple[Played, Played]) -> None:
     assert any("neither 0 nor the backlash" in problem for problem in ended.problems())
 
 
-def test_the_command(tmp_path: Path) -> None:
+@pytest.mark.parametrize("engine", ["model", "both"])
+def test_the_command(tmp_path: Path, engine: str) -> None:
     """It judges both, and says what was taken up."""
     machine, part = write(tmp_path)
     out = tmp_path / "out"
-    arguments = ["run", str(part), "--machine", str(machine), "--engine", "model", "--out", str(out)]
+    arguments = ["run", str(part), "--machine", str(machine), "--engine", engine, "--out", str(out)]
     assert cli.main(arguments) == 0
     summary: dict[str, Any] = json.loads((out / "summary.json").read_text())
     assert summary["ok"] and summary["taken_up"] == {"X": -8, "Y": -4}

@@ -368,8 +368,9 @@ def play_part(
     return Played(
         *(part, machine, steps.clocks, steps.positions, motions, end, drained, cause, matched),
         *(steps.events, steps.origin, _following(driver, machine), canceled),
-        *([passes.found, spindle.changes()] if spindle else []),
-        taken_up=taken_up,
+        passes.found if spindle else (),
+        spindle.changes() if spindle else np.empty(0, CHANGE),
+        taken_up,
     )
 
 

@@ -69,6 +69,7 @@ def scene_data(channels: Channels, run: SceneRun, engine: str) -> tuple[dict[str
             "signals": signals,
             "power": _power(run),
             "encoders": [_encoder(run, number) for number in range(len(run.setup.encoders))],
+            "trackers": [_tracker(run, axis) for axis in run.setup.tracked],
         },
     }
     packed = zlib.compress(np.concatenate([*streams, np.empty(0, np.uint8)]).tobytes(), 9)
@@ -103,6 +104,12 @@ def _encoder(run: SceneRun, number: int) -> dict[str, Any]:
         "error": (curve.made - curve.measured).tolist(),
         "limit": float(encoder.limit) if encoder.limit else None,
     }
+
+
+def _tracker(run: SceneRun, axis: int) -> dict[str, Any]:
+    """Samples of the host."""
+    clocks = run.tracked["clock"].astype(np.int64) - run.start
+    return {"axis": axis, "clocks": clocks.tolist(), "tracked": run.tracked["position"][:, axis].tolist()}
 
 
 def _events(run: SceneRun) -> list[dict[str, Any]]:
