@@ -199,12 +199,16 @@ def leadscrew(corrected: bool = True) -> Result:
     with model_engine(Parameters(axes=1, trackers=1), CLOCK_HZ) as engine:
         machine = Machine(engine)
         host = Host(machine, 1, speed=4000, acceleration=400_000)
+        targets = ffi().new("int16_t[]", [round(-off * SCALE) for off in TABLE])
+        facts = {"targets": targets, "points": len(TABLE), "pitch": TRAVEL * SCALE // (len(TABLE) - 1)}
+        table = ffi().new("struct passo_track_table *", facts)
         for steps in (TRAVEL * SCALE, -TRAVEL * SCALE):
             host.move([steps], FAST * SCALE)
 
         def look(clock: int) -> None:
             if corrected:
-                host.track(0, -error(host.driver.positions()[0] / SCALE) * SCALE)
+                at = planner().passo_track_at(table, host.driver.positions()[0])
+                host.track(0, at)
             result.add(clock)
 
         host.until(lambda: not host.driver.is_moving, look)
