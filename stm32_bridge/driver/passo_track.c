@@ -116,7 +116,7 @@ int32_t passo_track_at(const struct passo_track_table *table, int32_t position)
 	if (point >= (int64_t)table->points - 1)
 		return targets[table->points - 1u];
 	const int64_t change = (int64_t)targets[point + 1] - targets[point];
-	const int64_t twice = 2 * change * (way % pitch) + pitch; /* so many halves of `pitch`, and one */
+	const int64_t twice = 2 * change * (way % pitch) + pitch; /* in halves of `pitch`, and one more */
 	const int64_t rounded = twice >= 0 ? twice / (2 * pitch) : -((2 * pitch - 1 - twice) / (2 * pitch));
 	return targets[point] + (int32_t)rounded;
 }
