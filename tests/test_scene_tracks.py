@@ -163,7 +163,7 @@ def test_the_feeder(tmp_path: Path) -> None:
     arguments = ["run", file, "--engine", "model", "--out", str(out), "--plot", "--report"]
     assert cli.main(arguments) == 0
     assert (out / "motion.png").read_bytes().startswith(b"\x89PNG")
-    assert "track 2: track axis 2 to 160" in (out / "report.html").read_text()
+    assert "track 2: axis 2 to 160" in (out / "report.html").read_text()
     assert json.loads((out / "summary.json").read_text())["ok"]
     rows = (out / "pulses.csv").read_text().splitlines()
     assert sum(row.split(",")[1] == "2" for row in rows) == 320

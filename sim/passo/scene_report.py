@@ -172,5 +172,5 @@ def said(happened: Happened) -> str:
     if isinstance(event, EventUntrack):
         said += f" axis {event.axis}"
     if isinstance(event, MachineTrack):
-        said += f" axis {event.axis} to {event.target.value}"
+        said = f"axis {event.axis} to {event.target.value}"
     return f"{said} at {', '.join(map(str, happened.positions))}"
