@@ -124,6 +124,20 @@ def test_a_stop_ends_both_hands(tmp_path: Path) -> None:
     assert summarize_scene(run, "model")["outcome"] == "stopped"
 
 
+def test_backlash_is_taken_up_after_a_home(tmp_path: Path) -> None:
+    """Its stops end the trackers; each goes to its target again."""
+    home = '[[move]]\nmethod = "home"\nsteps = [-900, 0]\nspeed = 5000\nslow_speed = 500\n'
+    home += "acceleration = 200_000\nback_off = 40\n"
+    text = machine("start = [300, 0]", 'role = "home"\naxis = 0\nat = 0') + track("backlash = 25") + home
+    run = play(tmp_path, text + MOVE + MOVE.replace("[2000, -1000]", "[-1500, 1000]"))
+    assert run.problems() == [] and run.trackers[0].enabled and run.trackers[0].at_target
+    first = run.sections[1].begin - run.start
+    clocks, directions = run.steps(0)
+    own = clocks >= first
+    places = np.cumsum(directions[own], dtype=np.int64)
+    assert run.trackers[0].position == -25 and places.max() - places[-1] == 1525
+
+
 def test_what_the_pins_cannot_make_is_a_problem(tmp_path: Path) -> None:
     """The path fills 90 % of what they can, so the steps of the tracker do not fit."""
     pins = '[pins]\nstep_high = "45us"\nstep_low = "45us"\n'

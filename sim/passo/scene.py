@@ -58,6 +58,7 @@ class Scene:
         self.samples: list[tuple[Any, ...]] = []
         self.tracked: list[tuple[int, list[int]]] = []
         self.targets = dict.fromkeys(self.setup.tracked, 0)
+        self.following: dict[int, MachineTrack] = {}  # targets in force, by axis
         self.stops: list[Stop] = []
         self.latches: list[Latch] = []
         self.troubles: list[str] = []
@@ -119,7 +120,7 @@ class Scene:
         for track in self.setup.trackers:
             driver.call("configure_tracker", track_of(track))
         for track in self.setup.tracks:
-            driver.call("track_to", track_of(track), 0)
+            self._track(track)
 
     def _section(self, section: Section) -> None:
         section.begin = self.engine.clock
@@ -155,6 +156,9 @@ class Scene:
                 )
         if section.outcome == "OK" and self.is_stopped:
             section.outcome = "STOPPED"
+        if section.outcome == "OK" and section.kind in ("home", "probe"):
+            for track in list(self.following.values()):  # at its edges it has stopped the trackers, too
+                self._track(track)
         section.end = self.engine.clock
 
     def _poll(self) -> None:
@@ -231,9 +235,9 @@ class Scene:
             self.driver.call("arm_trigger", ffi().new("struct passo_trigger_config *", fields))
             self.armed = number
         elif isinstance(event, MachineTrack):
-            self.targets[event.axis] = int(event.target.value)
-            self.driver.call("track_to", track_of(event), self.targets[event.axis])
+            self._track(event)
         elif isinstance(event, EventUntrack):
+            self.following.pop(event.axis, None)
             self.driver.call("untrack", event.axis)
         elif name in COMMANDS:
             self.driver.call(name)
@@ -265,6 +269,11 @@ class Scene:
                 latch=list(report.positions)[: self.axes] if report.fired else None,
             )
         )
+
+    def _track(self, track: MachineTrack) -> None:
+        self.targets[track.axis] = int(track.target.value)
+        self.following[track.axis] = track
+        self.driver.call("track_to", track_of(track), self.targets[track.axis])
 
     def _look_at_trackers(self) -> None:
         if self.setup.trackers:
