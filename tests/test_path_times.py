@@ -4,6 +4,7 @@
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from passo.path import PathAxis, PathSettings
 from passo.path_rounding import Line
@@ -53,19 +54,49 @@ LIMITED = {
 }
 
 
-@pytest.mark.parametrize("name", LIMITED)
-def test_no_ramp_over_lines_of_unequal_slopes_exceeds_a_limit(name: str) -> None:
-    """One that has the slope of its first line alone comes down too late for a slower one."""
-    case = LIMITED[name]
-    settings = replace(case.settings, polls=FAST_POLLS, tolerance=0)
+def fed(case: Case, settings: PathSettings) -> Host:
+    """All lines known, all ramps taken."""
     host = Host(settings, len(case.lines) + SPARE)
     for target, feed in case.lines:
         host.path.add(target, feed)
     host.path.end()
     while host.take() is not None:
         pass
-    found = worst(host, limits_of(case.lines, settings), settings)
+    return host
+
+
+@pytest.mark.parametrize("name", LIMITED)
+def test_no_ramp_over_lines_of_unequal_slopes_exceeds_a_limit(name: str) -> None:
+    """One that has the slope of its first line alone comes down too late for a slower one."""
+    case = LIMITED[name]
+    settings = replace(case.settings, polls=FAST_POLLS, tolerance=0)
+    found = worst(fed(case, settings), limits_of(case.lines, settings), settings)
     assert all(found[name] < bound for name, bound in LIMITS.items()), found
+
+
+@pytest.mark.parametrize("bend", [2.0, 3.0, 5.0])
+def test_a_ramp_over_a_lone_corner_leaves_it_what_it_needs(bend: float) -> None:
+    """Profile jerk, long lines: what the ramp takes of an axis there, and half of v^2 c / l."""
+    case = Case("fast", (Piece(15, (7.6,), (bend,)),), "jerk")
+    settings = replace(case.settings, polls=FAST_POLLS)
+    host = fed(case, settings)
+    points = np.array([(0.0, 0.0, 0.0), *(target for target, _ in case.lines)])
+    size = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    units, ends = np.diff(points, axis=0) / size[:, None], np.cumsum(size)
+    turn = 2 * math.sin(math.radians(bend) / 2)
+    near = math.cos(math.radians(bend) / 2)
+    over = 4 * float(settings.junction_deviation) * near * (1 + near) / turn
+    found = [0.0]
+    for number, end in enumerate(ends[:-1]):
+        for ramp in host.ramps:
+            if ramp.begin < end < ramp.begin + ramp.length:
+                places, speeds, steep = ramp.at()
+                speed, along = np.interp(end, places, speeds), abs(np.interp(end, places, steep))
+                before, behind = units[number : number + 2]
+                share = along * np.maximum(np.abs(before), np.abs(behind))
+                share += speed**2 * np.abs(behind - before) / over / 2
+                found.append(float(share.max()) / float(settings.axes[0].acceleration))
+    assert 0.5 < max(found) < 1.01
 
 
 def arc(chord: float, bend: float, count: int, machine: str = "router", heading: float = 0.0) -> Case:

@@ -54,6 +54,13 @@ def test_a_short_move_from_rest_to_rest(steps: int) -> None:
     assert roots(move(steps)) <= 1 + ROUNDS
 
 
+@pytest.mark.parametrize("ends", [(400_000, 1000), (100_000, 1000)])
+def test_a_short_move_that_is_too_fast_at_its_start(ends: tuple[int, int]) -> None:
+    """It has no way up: the way down alone says how fast it may begin."""
+    start, stop = map(q32, ends)
+    assert roots(move(30, start_speed=start, stop_speed=stop)) <= 1 + ROUNDS
+
+
 @pytest.mark.parametrize("ends", [(1000, 1000), (1000, 0), (0, 3000), (500, 5000)])
 @pytest.mark.parametrize("steps", [300, 3000])
 def test_a_short_move_between_two_speeds(steps: int, ends: tuple[int, int]) -> None:
