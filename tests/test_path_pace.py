@@ -33,9 +33,9 @@ def chords(count: int, size: float, bend: float, first: float = 30, feed: float 
 
 def shortest(made: Planned, count: int) -> float:
     """Seconds of so many ramps in a row, at least."""
-    ticks = [ramp.ticks for ramp in made.ramps]
+    ticks: list[int] = [ramp.ticks for ramp in made.ramps]
     sums = (sum(ticks[first : first + count]) for first in range(len(ticks) - count))
-    return (min(sums) << made.path.parameters.tick_log2) / made.path.settings.clock_hz
+    return float(min(sums) << made.path.parameters.tick_log2) / made.path.settings.clock_hz
 
 
 @pytest.mark.parametrize(
