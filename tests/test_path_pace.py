@@ -32,7 +32,7 @@ def chords(count: int, size: float, bend: float, first: float = 30, feed: float 
 
 
 def shortest(made: Planned, count: int) -> float:
-    """Seconds of so many ramps in a row, at least."""
+    """Seconds of any `count` ramps in a row, at least."""
     ticks: list[int] = [ramp.ticks for ramp in made.ramps]
     sums = (sum(ticks[first : first + count]) for first in range(len(ticks) - count))
     return float(min(sums) << made.path.parameters.tick_log2) / made.path.settings.clock_hz
