@@ -14,7 +14,7 @@ from passo.planted import plant
 from passo.toolchain import paths
 
 from tests.helpers import sanitized
-from verify.mutants import trackers_judge
+from verify.mutants import trackers_due, trackers_host
 from verify.soak import defects, numbers, page, parts, trackers
 from verify.soak import program as soak_program
 from verify.soak.defects import Defect
@@ -70,7 +70,7 @@ def test_no_promise_is_broken_with_trackers() -> None:
 
 def test_a_step_of_a_tracker_that_is_not_made_goes_red(monkeypatch: pytest.MonkeyPatch) -> None:
     """As is one that comes in another tick: the judge has another recurrence then."""
-    monkeypatch.setattr(trackers_judge, "nearest", lambda position: (position + 1) // trackers_judge.STEP)
+    monkeypatch.setattr(trackers_host, "nearest", lambda position: (position + 1) // trackers_due.STEP)
     with pytest.raises(AssertionError, match="step"):
         trackers.play(parts.TRACKER_SETS[0], SEED, 0, rtl=False, shows=False)
 

@@ -1,360 +1,38 @@
 # SPDX-License-Identifier: MIT
 """Trackers as judge: each step in its tick, from the recurrence of docs/architecture.md in Python integers.
 
-Targets, speeds and enables that change at any time, stops of all kinds, beside a path and without one. What a
-write changes acts within some ticks: all of them are tried, and one must explain every step.
+Targets, speeds and enables that change at any time, stops of all kinds, beside a path and without one.
 """
 
 import random
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
-import numpy as np
 from passo import registers as r
 from passo.build import Parameters
 from passo.engine import Engine
-from passo.host import RATE_ONE, Channel
-from passo.moves import PinTiming
+from passo.host import RATE_ONE
 from passo.registers import Cause, State
 
 from tests.helpers.closed_form import ONE, Line, Ramp, substep_clocks
 from verify.mutants import registers_judge
 from verify.mutants.engine_judge import Check
-from verify.mutants.motions_judge import FRAME, TIME, Motions, Steps, all_substeps
+from verify.mutants.motions_judge import FRAME, TIME, Steps, all_substeps
+from verify.mutants.trackers_due import HALF, LATE, STEP, Due, Hand, joined, nearest
+from verify.mutants.trackers_host import Host, phases
 
 MODULES = ("passo_tracker", "passo_trackers", "passo_tracker_join")
-STEP = 1 << 32
-HALF = 1 << 31
 FAR = HALF - 5000  # nearly half of all positions away: a target beyond is behind
-TURN = 32  # clocks
-LATE = 4  # ticks until a write acts, at most
 ABOVE = 3  # ticks above the fastest motion
 DROPPED = 7  # steps of a tracker, at most, by a hard stop
 SLOWEST = STEP // 8  # that is drawn: nothing takes long
-OPTIONS = 4000  # ways in which writes may have acted; more are never needed
 
-# When the steps leave the pins: clocks after the turn of their axis begins, as it is in the core itself.
-phases: dict[Parameters, int] = {}
 # Clocks by which a tracker's step counts before it is at the pins: those that fit the core itself.
 leads: dict[Parameters, set[int]] = {}
 
 
-def signed(value: int, bits: int = 64) -> int:
-    """As a signed number."""
-    value %= 1 << bits
-    return value - (value >> bits - 1 << bits)
-
-
-def nearest(position: int) -> int:
-    """A step is due where this changes."""
-    return (position + HALF) // STEP
-
-
-@dataclass(frozen=True)
-class Hand:
-    """The tracker of an axis between two ticks, and what it has been told."""
-
-    position: int = 0  # of 2^-32 steps
-    v: int = 0
-    t: int = 0
-    sign: int = 1  # of the distance, when it looked last
-    target: int = 0
-    speed: int = 0
-    acceleration: int = 0
-    follows: bool = False  # enabled, and in no soft stop
-    applied: int = 0  # writes
-
-    def tick(self) -> "Hand":
-        """The recurrence."""
-        v, t, a, sign = self.v, self.t, self.acceleration, self.sign
-        d = signed(self.target * STEP - self.position) * sign
-        if not self.follows and v == 0:
-            return self
-        if self.follows and v + a <= self.speed and t + v + a <= d:
-            v += a
-            t += v
-        elif v and not (self.follows and v <= self.speed and t <= d):
-            t -= v
-            v -= a
-        if v == 0 and self.follows and 0 <= d < a:
-            return replace(self, v=0, t=0, position=self.position + d * sign)
-        turned = self.follows and self.v == 0 and d < 0
-        return replace(self, v=v, t=t, position=self.position + v * sign, sign=-sign if turned else sign)
-
-
-@dataclass(frozen=True)
-class Due:
-    """A step that is due at the pins, of the path or of the tracker."""
-
-    clock: int
-    way: int
-    of_path: bool
-
-
-@dataclass(frozen=True)
-class Write:
-    """What an axis is told, and the clock from which on it may act."""
-
-    clock: int
-    told: dict[str, int] = field(hash=False)
-
-
-def applied(hand: Hand, writes: Sequence[tuple[int, dict[str, int]]], tick: int) -> Iterator[Hand]:
-    """It before a tick, with the writes that act by now, and with some that may."""
-    while hand.applied < len(writes) and writes[hand.applied][0] + LATE <= tick:
-        hand = replace(hand, **writes[hand.applied][1], applied=hand.applied + 1)
-    yield hand
-    while hand.applied < len(writes) and writes[hand.applied][0] <= tick:
-        hand = replace(hand, **writes[hand.applied][1], applied=hand.applied + 1)
-        yield hand
-
-
-def joined(path: Steps, tracker: Steps, changes: Sequence[tuple[int, int]], lead: int) -> list[Due]:
-    """The steps of an axis: as docs/architecture.md joins those of both hands.
-
-    `changes` are the clocks from which on the path moves the axis up, down, or not (0); a tracker's step
-    counts `lead` clocks before it leaves the pins.
-    """
-    events = [(clock, 0, way) for clock, way in changes]
-    events += [(clock - lead, 1, way) for clock, way in tracker]
-    events += [(clock, 2, way) for clock, way in path]
-    events += [(clock, 3, 0) for clock, _ in (*tracker, *changes)]
-    going = owed = 0
-    due = []
-    for clock, kind, way in sorted(events):
-        if kind == 0:
-            going = way
-        elif kind == 1:
-            owed += way
-        elif kind == 2:
-            if owed * way < 0:
-                owed += way
-            else:
-                due.append(Due(clock, way, True))
-        while kind == 3 and owed and owed * going != -1:
-            one = 1 if owed > 0 else -1
-            due.append(Due(clock, one, False))
-            owed -= one
-    return due
-
-
-class Trackers(Motions):
+class Trackers(Host):
     """A core whose trackers are judged."""
-
-    def __init__(self, engine: Engine, parameters: Parameters, rng: random.Random):
-        super().__init__(engine, parameters, rng)
-        self.axes = parameters.axes
-        self.turns = 8 if self.axes > 4 else 4
-        self.channel: Channel = self.channels[0]
-        self.timings: list[PinTiming] = []
-        self.hands = [{Hand()} for _ in range(self.axes)]  # all that it may be
-        self.writes: list[list[Write]] = [[] for _ in range(self.axes)]
-        self.shown: list[tuple[int, int, list[int]]] = []
-        self.targets = [(0, 0)] * self.axes  # of an axis that went up last, or down
-        self.down = [False] * self.axes
-        self.origin = 0  # clock at which the first turn begins
-        self.since = 0  # clock of the last look
-        self.made = 0  # steps so far
-        self.apart: list[int] = []  # positions without the trackers
-
-    @property
-    def period(self) -> int:
-        """Clocks of a tick."""
-        return TURN * self.turns
-
-    # --- The host --------------------------------------------------------------------------------
-
-    def set_up(self) -> None:
-        """Any polarity and timing of each axis, and all drives enabled."""
-        super().set_up()
-        for axis in range(self.axes):
-            timing = PinTiming(*(self.rng.randint(1, TIME) for _ in range(4)))
-            word = timing.step_high << 16 | timing.step_low, timing.dir_setup << 16 | timing.dir_hold
-            self.link.write(self.channel.axis_base(axis) + r.AXIS_STEP_TIMING, *word)
-            self.timings.append(timing)
-            self.high[axis] = timing.step_high
-        self.see()
-        self.events = self.events[-1:]
-        self.look()
-
-    def look(self) -> None:
-        """Forget the events so far."""
-        self.engine.run(10)
-        self.see()
-        self.check_times()
-        self.made += sum(len(self.steps(self.channel, axis)) for axis in range(self.axes))
-        self.events = self.events[-1:]
-        self.since = self.engine.clock
-
-    def tell(self, axis: int, **told: int) -> None:
-        """Note what a write has told an axis."""
-        self.writes[axis].append(Write(self.engine.clock - FRAME, told))
-
-    def limit(self, axis: int, speed: int, acceleration: int | None = None) -> None:
-        """Write its speed; and its acceleration, only at rest."""
-        words = [speed] if acceleration is None else [speed, acceleration]
-        self.link.write(self.channel.axis_base(axis) + r.AXIS_TRACKER_SPEED, *words)
-        more = {} if acceleration is None else {"acceleration": acceleration}
-        self.tell(axis, speed=speed, **more)
-
-    def go(self, axis: int, target: int, back: int = 0) -> None:
-        """Write its target; the one of an axis that went down is another."""
-        base = self.channel.base + axis
-        arrays = r.CHANNEL_TRACKER_TARGET_BASE, r.CHANNEL_TRACKER_TARGET_DOWN_BASE
-        words = [target % STEP, (target - back) % STEP]
-        self.targets[axis] = (signed(words[0], 32), signed(words[1], 32))
-        for place in (1, 0) if self.down[axis] is False else (0, 1):  # what acts, last
-            self.link.write(base + arrays[place], words[place])
-        self.tell(axis, target=self.targets[axis][self.down[axis]])
-
-    def enable(self, axes: int) -> None:
-        """Let some trackers follow their targets, as bits."""
-        self.link.write(self.channel.base + r.CHANNEL_TRACKER_ENABLE, axes)
-        for axis in range(self.axes):
-            self.tell(axis, follows=axes >> axis & 1)
-
-    def state(self) -> r.ChannelTrackerStateWord:
-        """Read TRACKER_STATE."""
-        (word,) = self.link.read(self.channel.base + r.CHANNEL_TRACKER_STATE, 1)
-        return r.ChannelTrackerStateWord.unpack(word)
-
-    def read(self) -> list[int]:
-        """Read TRACKER_POSITION of all axes."""
-        words = self.link.read(self.channel.base + r.CHANNEL_TRACKER_POSITION_BASE, self.axes)
-        return [signed(word, 32) for word in words]
-
-    def settle(self, most: int = 400_000) -> None:
-        """Until all trackers rest."""
-        for _ in range(most // 1000):
-            self.engine.run(1000)
-            if self.channel.state().quiet:
-                break
-        else:
-            raise AssertionError(f"trackers come to rest: {self.channel.state()} {self.state()}")
-        self.engine.run(6 * TIME)
-        self.see()
-
-    def check_times(self) -> None:
-        """STEP is inactive, and DIR keeps its level, for as long as it must."""
-        clocks = self.events["clock"].astype(np.int64)
-        for axis, timing in enumerate(self.timings):
-            step, way = (
-                ((self.events[pin] ^ self.inverted[pin]) >> axis & 1).astype(np.int8)
-                for pin in ("step", "dir")
-            )
-            change = np.diff(step)
-            rises, falls = clocks[1:][change == 1], clocks[1:][change == -1]
-            assert (rises[1:] - falls[: len(rises) - 1] >= timing.step_low).all(), "STEP is inactive"
-            for turn in clocks[1:][np.diff(way) != 0]:
-                after, before = rises[rises >= turn], falls[falls <= turn]
-                assert not len(after) or after[0] - turn >= timing.dir_setup, "DIR setup"
-                hold = timing.step_low + timing.dir_hold
-                assert not len(before) or turn - before[-1] >= hold, "DIR hold"
-
-    # --- What is due -----------------------------------------------------------------------------
-
-    def tick_of(self, axis: int, clock: int) -> tuple[int, int]:
-        """The tick in which a step of a tracker leaves the pins, and by how many clocks it is late."""
-        since = clock - self.origin - TURN * axis - phases[self.parameters]
-        return since // self.period, since % self.period
-
-    def clock_of(self, axis: int, tick: int) -> int:
-        """When a step of a tick leaves the pins."""
-        return self.origin + TURN * axis + phases[self.parameters] + tick * self.period
-
-    def alone(self) -> None:
-        """Every step since the last look is in its tick, of an axis that no path moves."""
-        self.see()
-        shown: list[list[set[int]]] = []
-        for axis in range(self.axes):
-            made: dict[int, int] = {}
-            before = 0
-            for clock, way in self.steps(self.channel, axis):
-                tick, late = self.tick_of(axis, clock)
-                timing = self.timings[axis]
-                turns = timing.dir_setup + timing.dir_hold + timing.step_low if way != before else 0
-                assert late <= turns + 2 * bool(turns), f"a step of axis {axis} is {late} clocks late"
-                assert tick not in made, f"two steps of axis {axis} in a tick"
-                made[tick], before = way, way
-            first = self.tick_of(axis, self.since)[0] - LATE
-            until = self.tick_of(axis, self.engine.clock)[0]
-            if made and max(made) > until:
-                until = max(made)
-            shown.append(self.follow(axis, made, first, until))
-        self.check_shown(shown)
-        self.look()
-
-    def follow(self, axis: int, made: dict[int, int], first: int, until: int) -> list[set[int]]:
-        """Play the ticks; the positions that a host may see in each of the last ones."""
-        writes = [(self.tick_of(axis, write.clock)[0], write.told) for write in self.writes[axis]]
-        hands = self.hands[axis]
-        looks: dict[int, set[int]] = {}
-        for tick in range(first, until + 1):
-            options = set()
-            for hand in hands:
-                options |= set(applied(hand, writes, tick))
-            hands = {
-                after
-                for hand in options
-                if nearest((after := hand.tick()).position) - nearest(hand.position) == made.get(tick, 0)
-            }
-            assert hands, f"axis {axis}: step {made.get(tick, 0)} in tick {tick}"
-            assert len(hands) < OPTIONS
-            looks[tick] = {hand.position // STEP for hand in hands}
-        done = {hand for hand in hands if hand.applied == len(writes)}
-        assert done, f"axis {axis}: a write acts"
-        self.hands[axis] = {replace(hand, applied=0) for hand in done}
-        self.writes[axis] = []
-        seen = []
-        for begun, ended, _ in self.shown:
-            ticks = range(self.tick_of(axis, begun)[0] - 1, self.tick_of(axis, ended)[0] + 1)
-            seen.append(set().union(*(looks.get(tick, set()) for tick in ticks)))
-        return seen
-
-    def check_shown(self, due: list[list[set[int]]]) -> None:
-        """What was read on the way is what was due then."""
-        for n, (_, _, positions) in enumerate(self.shown):
-            for axis, position in enumerate(positions):
-                assert position in due[axis][n], f"TRACKER_POSITION of axis {axis}: {position}"
-        self.shown = []
-
-    def position(self, axis: int) -> int:
-        """In whole steps, at rest."""
-        (position,) = {hand.position // STEP for hand in self.hands[axis]}
-        return position
-
-    def check_rest(self, enabled: int) -> None:
-        """At rest: registers and pins agree, and nothing waits."""
-        state, read = self.state(), self.read()
-        assert (state.enabled, state.moves) == (enabled, 0), f"{state}"
-        for axis, hands in enumerate(self.hands):
-            assert all(hand.v == 0 for hand in hands), "at rest"
-            at = {hand.position == hand.target * STEP for hand in hands}
-            assert bool(state.at_target >> axis & 1) in at, f"at the target: {state}"
-            assert read[axis] in {hand.position // STEP for hand in hands}, "TRACKER_POSITION"
-
-    def landed(self) -> None:
-        """All are known to rest at their targets."""
-        targets = [both[down] for both, down in zip(self.targets, self.down, strict=True)]
-        assert self.read() == targets, "at the targets"
-        self.know(targets)
-
-    def know(self, positions: Sequence[int], **told: bool) -> None:
-        """All trackers are known to rest at these positions, and have taken what they have been told."""
-        for axis, hands in enumerate(self.hands):
-            written = {name: value for write in self.writes[axis] for name, value in write.told.items()}
-            written |= {
-                **told,
-                "target": self.targets[axis][self.down[axis]],
-                "position": positions[axis] * STEP,
-            }
-            known = replace(next(iter(hands)), **written, v=0, t=0, applied=0)
-            self.hands[axis] = {replace(known, sign=sign) for sign in (-1, 1)}
-            self.writes[axis] = []
-        self.shown = []
-        self.look()
-
-    # --- Scenarios -------------------------------------------------------------------------------
 
     def measure(self) -> None:
         """When steps leave the pins, as it is in the core itself."""
@@ -692,7 +370,7 @@ class Trackers(Motions):
         known = leads.get(self.parameters, set(range(-3, 6)))
         for axis in range(self.axes):
             path = [(clocks[n], way) for n, way in all_substeps(lines, axis, len(clocks))]
-            fitting = set()
+            fitting: set[int] = set()
             for changes in self.changes(lines, axis, clocks, begin, end):
                 for first in range(LATE + 1):
                     for hand in hands[axis]:
