@@ -3,6 +3,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 from verify.mutants.motions_judge import Steps
 
@@ -68,10 +69,10 @@ class Write:
     """What an axis is told, and the clock from which on it may act."""
 
     clock: int
-    told: dict[str, int] = field(hash=False)
+    told: dict[str, Any] = field(hash=False)
 
 
-def applied(hand: Hand, writes: Sequence[tuple[int, dict[str, int]]], tick: int) -> Iterator[Hand]:
+def applied(hand: Hand, writes: Sequence[tuple[int, dict[str, Any]]], tick: int) -> Iterator[Hand]:
     """It before a tick, with the writes that act by now, and with some that may."""
     while hand.applied < len(writes) and writes[hand.applied][0] + LATE <= tick:
         hand = replace(hand, **writes[hand.applied][1], applied=hand.applied + 1)

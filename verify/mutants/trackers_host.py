@@ -7,14 +7,13 @@ What a write changes acts within some ticks: all of them are tried, and one must
 import random
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from passo import registers as r
 from passo.build import Parameters
-from passo.engine import Engine
 from passo.host import Channel
 from passo.moves import PinTiming
-from passo.pair_engine import PairEngine
 
 from verify.mutants.motions_judge import FRAME, TIME, Motions
 from verify.mutants.trackers_due import LATE, STEP, Hand, Write, applied, nearest, signed
@@ -29,7 +28,7 @@ phases: dict[Parameters, int] = {}
 class Host(Motions):
     """A core whose trackers are judged."""
 
-    def __init__(self, engine: Engine | PairEngine, parameters: Parameters, rng: random.Random):
+    def __init__(self, engine: Any, parameters: Parameters, rng: random.Random):
         super().__init__(engine, parameters, rng)
         self.axes = parameters.axes
         self.turns = 8 if self.axes > 4 else 4
@@ -230,7 +229,9 @@ class Host(Motions):
     def know(self, positions: Sequence[int], **told: bool) -> None:
         """All trackers are known to rest at these positions, and have taken what they have been told."""
         for axis, hands in enumerate(self.hands):
-            written = {name: value for write in self.writes[axis] for name, value in write.told.items()}
+            written: dict[str, Any] = {
+                name: value for write in self.writes[axis] for name, value in write.told.items()
+            }
             written |= {
                 **told,
                 "target": self.targets[axis][self.down[axis]],

@@ -25,6 +25,7 @@ MODULES = ("passo_tracker", "passo_trackers", "passo_tracker_join")
 FAR = HALF - 5000  # nearly half of all positions away: a target beyond is behind
 ABOVE = 3  # ticks above the fastest motion
 DROPPED = 7  # steps of a tracker, at most, by a hard stop
+NOT_MADE = 3  # steps when an axis has no room: one is lost, two that wait for it are dropped
 SLOWEST = STEP // 8  # that is drawn: nothing takes long
 
 # Clocks by which a tracker's step counts before it is at the pins: those that fit the core itself.
@@ -56,6 +57,7 @@ class Trackers(Host):
         rng = self.rng
         limits = [self.limits() for _ in range(self.axes)]
         distances = [rng.choice((-1, 1)) * int(2 ** rng.uniform(0, 6.5)) for _ in range(self.axes)]
+        distances[0] = rng.choice((-1, 1)) * rng.randint(20, 90)  # it moves for some frames
         for axis in range(self.axes):
             self.limit(axis, *limits[axis])
             self.go(axis, self.position(axis) + distances[axis])
@@ -293,9 +295,8 @@ class Trackers(Host):
         self.link.write(r.ADDRESS_INPUT_FILTER, 0)
         self.look()
 
-    def overruns(self) -> None:
+    def overruns(self, axis: int, way: int) -> None:
         """More steps than the pins can make are lost, which stops the channel."""
-        axis, way = self.rng.randrange(self.axes), self.rng.choice((-1, 1))
         timing = self.channel.axis_base(axis) + r.AXIS_STEP_TIMING
         before = self.timings[axis]
         high = self.high[axis] = self.rng.randint(900, 3000)
@@ -312,7 +313,10 @@ class Trackers(Host):
         assert self.channel.state().overrun == 1 << axis, "the axis that overran"
         (lost,) = self.link.read(self.channel.axis_base(axis) + r.AXIS_LOST_STEPS, 1)
         assert 0 < lost < 8, "lost steps"
-        assert 5 <= len(self.steps(self.channel, axis)) <= 40, "steps wait for each other"
+        made = self.steps(self.channel, axis)
+        missing = (self.read()[axis] - self.position(axis)) * way - len(made)
+        # rounded down, and one more may be due until it stops
+        assert NOT_MADE - 1 <= missing <= NOT_MADE + 1, f"{missing} steps are not made"
         self.engine.run(2 * high)
         self.look()
         self.link.write(timing, before.step_high << 16 | before.step_low)
@@ -589,9 +593,9 @@ def check(engine: Engine, parameters: Parameters, rng: random.Random) -> None:
     trackers.switches()
     trackers.stops(True)
     trackers.unknown()
-    trackers.overruns()
+    for axis in range(parameters.axes):
+        trackers.overruns(axis, 1 - axis % 2 * 2)
     trackers.torn()
-    trackers.overruns()
     trackers.reset()
     trackers.disturbed()
     trackers.jumps()
@@ -611,7 +615,9 @@ KINDS: dict[str, Callable[[Trackers], None]] = {
     "hard stop": lambda trackers: trackers.stops(True),
     "switches": Trackers.switches,
     "unknown": Trackers.unknown,
-    "overruns": Trackers.overruns,
+    "overruns": lambda trackers: trackers.overruns(
+        trackers.rng.randrange(trackers.axes), trackers.rng.choice((-1, 1))
+    ),
     "torn": Trackers.torn,
     "reset": Trackers.reset,
 }

@@ -128,15 +128,9 @@ def play_endings(program: Path, kind: str, seed: int, histories: int, jobs: int)
 def play_trackers(seed: int, histories: int, jobs: int, rtl: bool = False) -> Part:
     """Histories of paths and trackers, in Python, on the C model or also on Verilated cores."""
     name = "trackers on verilator" if rtl else "trackers"
-    judges = sorted((paths.root / "verify/mutants").glob("*_judge.py"))
-    made = hash_of(
-        [
-            model_library(),
-            *judges,
-            *sorted((paths.root / "verify/mutants").glob("trackers_*.py")),
-            HERE / "trackers.py",
-        ]
-    )
+    mutants = paths.root / "verify/mutants"
+    judges = [*mutants.glob("motions_judge.py"), *sorted(mutants.glob("trackers_*.py"))]
+    made = hash_of([model_library(), *judges, HERE / "trackers.py"], [])
     more = [made, *(["--rtl"] if rtl else [])]
     if rtl:
         for parameters in TRACKER_SETS:
