@@ -25,7 +25,7 @@ def nearest(position: int) -> int:
 
 @dataclass(frozen=True)
 class Hand:
-    """The tracker of an axis between two ticks, and what it has been told."""
+    """The tracker of an axis between two ticks, and what the host has written."""
 
     position: int = 0  # of 2^-32 steps
     v: int = 0
@@ -66,7 +66,7 @@ class Due:
 
 @dataclass(frozen=True)
 class Write:
-    """What an axis is told, and the clock from which on it may act."""
+    """What is written for an axis, and the clock from which on it may act."""
 
     clock: int
     told: dict[str, Any] = field(hash=False)

@@ -227,7 +227,7 @@ class Host(Motions):
         self.know(targets)
 
     def know(self, positions: Sequence[int], **told: bool) -> None:
-        """All trackers are known to rest at these positions, and have taken what they have been told."""
+        """All trackers are known to rest at these positions, and have taken what was written."""
         for axis, hands in enumerate(self.hands):
             written: dict[str, Any] = {
                 name: value for write in self.writes[axis] for name, value in write.told.items()

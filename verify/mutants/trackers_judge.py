@@ -53,7 +53,7 @@ class Trackers(Host):
         return min(STEP - 1, max(SLOWEST, int(acceleration * 2 ** self.rng.uniform(0, 6)))), acceleration
 
     def lands(self) -> None:
-        """All axes at once, from rest to rest; in nearly the shortest time."""
+        """All axes together, from rest to rest; in nearly the shortest time."""
         rng = self.rng
         limits = [self.limits() for _ in range(self.axes)]
         distances = [rng.choice((-1, 1)) * int(2 ** rng.uniform(0, 6.5)) for _ in range(self.axes)]
@@ -207,9 +207,9 @@ class Trackers(Host):
         self.know([0] * self.axes, follows=False)
 
     def reset(self) -> None:
-        """A reset while trackers move: what they have been told is kept, and where they are is 0."""
+        """A reset while trackers move: what was written is kept, and where they are is 0."""
         self.away()
-        for axis in range(self.axes):  # all that was told has been taken
+        for axis in range(self.axes):  # all that was written has been taken
             self.go(axis, self.rng.randint(-70, 70), self.rng.randint(0, 9))
         self.engine.run(4 * self.period)
         self.engine.set("rst", 1)
@@ -485,7 +485,7 @@ class Trackers(Host):
         self.alone()
 
     def rest(self) -> None:
-        """Until no tracker moves, beside a path that stands."""
+        """Until no tracker moves, beside a path in a hold."""
         self.engine.run(8 * self.period)
         for _ in range(1000):
             if not self.state().moves:
