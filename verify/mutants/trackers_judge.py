@@ -359,11 +359,27 @@ class Trackers(Host):
             speed = rng.choice((STEP - 1, STEP // 2, rng.randint(STEP // 60, STEP // 2)))
             self.limit(axis, speed, speed // rng.randint(1, 6))
             self.go(axis, self.position(axis) + rng.choice((-1, 1)) * rng.randint(1, 9))
+        self.both(lines, ramps, rng.randint(0, 12 * gap))
+
+    def meets(self) -> None:
+        """Steps of both hands, against each other, come on the same clock, and around it."""
+        gap = self.period + 1
+        velocity, total = ONE // gap, 2 * gap
+        ramps = [Ramp(velocity, 0), Ramp(velocity, total * gap // self.tick, last=True)]
+        total = len(substep_clocks(ramps, self.tick.bit_length() - 1))
+        ways = [self.rng.choice((-1, 1)) for _ in range(self.axes)]
+        for axis, way in enumerate(ways):
+            self.limit(axis, STEP - 1, (STEP - 1) // 8)
+            self.go(axis, self.position(axis) - way * total)
+        self.both([Line(total, tuple(way * total for way in ways), last=True)], ramps, 2 * gap)
+
+    def both(self, lines: Sequence[Line], ramps: Sequence[Ramp], wait: int) -> None:
+        """A path, and trackers that are enabled some clocks later."""
         self.alone()
         begun = self.channel.positions()
         self.push(self.channel, lines, ramps)
         self.channel.start()
-        self.engine.run(rng.randint(0, 12 * gap))
+        self.engine.run(wait)
         hands = [{replace(hand, follows=True) for hand in hands} for hands in self.hands]
         self.enable((1 << self.axes) - 1)
         at = self.engine.clock - FRAME
@@ -596,6 +612,7 @@ def check(engine: Engine, parameters: Parameters, rng: random.Random) -> None:
     for axis in range(parameters.axes):
         trackers.overruns(axis, 1 - axis % 2 * 2)
     trackers.torn()
+    trackers.meets()
     trackers.reset()
     trackers.disturbed()
     trackers.jumps()
@@ -608,6 +625,7 @@ KINDS: dict[str, Callable[[Trackers], None]] = {
     "lands": Trackers.lands,
     "jumps": Trackers.jumps,
     "joins": Trackers.joins,
+    "meets": Trackers.meets,
     "reverses": Trackers.reverses,
     "held": Trackers.held,
     "disturbed": Trackers.disturbed,
