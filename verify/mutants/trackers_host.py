@@ -110,7 +110,7 @@ class Host(Motions):
         words = self.link.read(self.channel.base + r.CHANNEL_TRACKER_POSITION_BASE, self.axes)
         return [signed(word, 32) for word in words]
 
-    def settle(self, most: int = 400_000) -> None:
+    def settle(self, most: int = 2_000_000) -> None:
         """Until all trackers rest."""
         for _ in range(most // 1000):
             self.engine.run(1000)

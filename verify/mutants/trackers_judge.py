@@ -66,7 +66,7 @@ class Trackers(Host):
         self.enable(everyone)
         assert not self.channel.state().quiet, "a tracker that moves is not quiet"
         assert self.state().moves, "a tracker that moves says so"
-        self.settle(2_000_000)
+        self.settle()
         for axis, (speed, a) in enumerate(limits):
             made, steps = self.steps(self.channel, axis), abs(distances[axis])
             assert len(made) == steps, f"steps of axis {axis}"
@@ -108,7 +108,7 @@ class Trackers(Host):
             self.go(axis, rng.randint(-50, 50))
         everyone = (1 << self.axes) - 1
         self.enable(everyone)
-        self.settle(2_000_000)
+        self.settle()
         self.alone()
         self.check_rest(everyone)
         for hands in self.hands:
@@ -224,7 +224,7 @@ class Trackers(Host):
         self.events = self.events[-1:]  # a pulse in a reset is longer
         self.begin_at_0()
         self.enable((1 << self.axes) - 1)
-        self.settle(2_000_000)
+        self.settle()
         self.alone()
         self.check_rest((1 << self.axes) - 1)
         self.enable(0)
