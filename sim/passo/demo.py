@@ -32,7 +32,7 @@ EXAMPLES = (
 )
 LONG = ("four_motors", "there_and_back", "sigmoid", "turn")  # to simulate; these come first
 # examples with a machine or events
-MACHINES = ("homing", "probing", "hold_and_estop", "closed_loop", "laser", "threading")
+MACHINES = ("homing", "probing", "hold_and_estop", "closed_loop", "laser", "feeder", "threading")
 PROGRAMS = {"engraving": "corexy"}  # G-code and its machine
 GANTRY = "gantry"  # a machine that is homed
 ALL = (*EXAMPLES, *MACHINES, *PROGRAMS, GANTRY)
