@@ -19,7 +19,7 @@ from verify.mutants.motions_judge import FRAME, TIME, Motions
 from verify.mutants.trackers_due import LATE, STEP, Hand, Write, applied, nearest, signed
 
 TURN = 32  # clocks
-OPTIONS = 4000  # ways in which writes may have acted; more are never needed
+OPTIONS = 100_000  # ways in which writes may have acted; more are never needed
 
 # When the steps leave the pins: clocks after the turn of their axis begins, as it is in the core itself.
 phases: dict[Parameters, int] = {}
