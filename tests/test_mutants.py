@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 from passo import random_cases
+from passo.build import Parameters
 from passo.engine import model_engine
 from passo.toolchain import environment
 
@@ -29,6 +30,7 @@ from verify.mutants import (
     registers_judge,
     shapes_judge,
     timings_judge,
+    trackers_judge,
 )
 from verify.mutants.c_equal import object_code
 from verify.mutants.c_judge import Worker
@@ -36,7 +38,7 @@ from verify.mutants.c_mutate import DECLARED
 from verify.mutants.c_source import CMutant
 from verify.mutants.c_source import drawn as drawn_c
 from verify.mutants.engine_judge import Check
-from verify.mutants.netlist import PLAIN, Core, Mutant, drawn
+from verify.mutants.netlist import PLAIN, TRACKED, Core, Mutant, drawn
 from verify.mutants.netlist import library as verilated
 from verify.soak.parts import MACHINE, SETS
 from verify.soak.program import build
@@ -111,11 +113,18 @@ def test_a_check_in_python_kills_mutants(
     assert any(engine_judge.broken(SAMPLE, library, number, str(SEED), check) for number in some)
 
 
-@pytest.mark.parametrize("check", [inputs_judge.CHECK, outputs_judge.CHECK])
-def test_a_check_of_a_machine_finds_no_fault_with_the_core(check: Check) -> None:
+@pytest.mark.parametrize(
+    ("check", "parameters"),
+    [
+        (inputs_judge.CHECK, MACHINE),
+        (outputs_judge.CHECK, MACHINE),
+        (trackers_judge.CHECK, TRACKED.parameters),
+    ],
+)
+def test_a_check_of_a_machine_finds_no_fault_with_the_core(check: Check, parameters: Parameters) -> None:
     """On the model: that it can fail is shown by its mutants."""
-    with model_engine(MACHINE) as engine:
-        check.play(engine, MACHINE, random.Random(SEED))
+    with model_engine(parameters) as engine:
+        check.play(engine, parameters, random.Random(SEED))
 
 
 def test_a_promise_kills_a_mutant() -> None:

@@ -16,10 +16,13 @@ from passo.link import Link
 
 from benchmarks import backlash
 from tests.test_core_advance import SEED, Session
+from verify.mutants.trackers_judge import Trackers
+from verify.soak.parts import TRACKER_SETS
 
 BUILDS = [
     Parameters(channels=1, axes=3, inputs=1, trackers=1),
     Parameters(channels=2, axes=5, line_queue_log2=3, ramp_queue_log2=3, trackers=1),
+    Parameters(channels=1, axes=4, inputs=1, trackers=1),
 ]
 STEP = 1 << 32
 TICK = 128  # clocks
@@ -99,6 +102,17 @@ def test_limits_hold_at_the_pins_whatever_the_targets_do(number: int) -> None:
     after = np.cumsum(signs)[clocks > jumped]
     away = np.abs(after - target)
     assert np.all(np.diff(away[away.argmax() :]) <= 0)
+
+
+@pytest.mark.parametrize("number", range(6))
+def test_stops_and_zero_as_the_judge_at_the_pins_knows_them(number: int) -> None:
+    """After ZERO the position of every axis is 0, also of the last one, whose turn ends with the tick."""
+    with model_engine(TRACKER_SETS[0]) as engine:
+        trackers = Trackers(engine, TRACKER_SETS[0], random.Random(f"{number}"))
+        trackers.set_up()
+        trackers.measure()
+        for hard in (False, True, False):
+            trackers.stops(hard)
 
 
 def test_backlash_makes_a_circle_round() -> None:

@@ -263,6 +263,16 @@ static bool axis_rests(const struct passo_tracker_axis *axis, const struct passo
 	    && (there || !axis->enabled) && axis->shown == (uint32_t)(axis->position >> 32);
 }
 
+/* The axis whose settings have been read; `axes` or more: none. */
+static unsigned turn_in_progress(const struct passo_channel *channel)
+{
+	const struct passo_trackers *trackers = &channel->trackers;
+
+	if (trackers->slot == SLOT_SETTINGS)
+		return channel->axes;
+	return trackers->slot == SLOT_OVER ? turn_before(channel) : trackers->turn;
+}
+
 bool passo_trackers_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs)
 {
 	const struct passo_trackers *trackers = &channel->trackers;
@@ -272,6 +282,12 @@ bool passo_trackers_quiet(const struct passo_channel *channel, const struct pass
 		return true;
 	if (!passo_trackers_settled(channel) || trackers->clears != 0u || trackers->busy
 	    || trackers->writes_enable || trackers->writes_setting)
+		return false;
+	const unsigned turn = turn_in_progress(channel);
+
+	if (turn < channel->axes
+	    && (trackers->now.cleared_position
+	        || trackers->now.target_down != trackers->join[turn].went_down))
 		return false;
 	passo_admission_wires(&channel->admission, inputs->bus, inputs->tables_wanted, &wires);
 	if (trackers->hold != (wires.hold || passo_inputs_requests(channel, inputs).wait))
@@ -297,8 +313,8 @@ void passo_trackers_skip(struct passo_channel *channel, uint64_t clocks)
 	trackers->slot = (uint8_t)((now + clocks) % PASSO_TRACKER_TURN);
 	trackers->turn = (uint8_t)((now + clocks) % tick / PASSO_TRACKER_TURN);
 	trackers->now = (struct passo_tracker_turn){0};
-	const unsigned axis = trackers->slot == SLOT_OVER ? turn_before(channel) : trackers->turn;
-	if (axis >= channel->axes || trackers->slot == SLOT_SETTINGS)
+	const unsigned axis = turn_in_progress(channel);
+	if (axis >= channel->axes)
 		return;
 	begin_turn(trackers, axis, false, trackers->hold);
 	if (trackers->slot > SLOT_COMPARED || trackers->slot == SLOT_OVER)

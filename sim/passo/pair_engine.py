@@ -69,6 +69,11 @@ class PairEngine(Closed):
         """Level of the irq pins; their changes are compared like those of all pins."""
         return self.rtl.irq
 
+    @property
+    def running(self) -> int:
+        """Level of the running pins."""
+        return self.rtl.running
+
     def attach(self, config: Any) -> list[tuple[Any, Any]]:
         """Connect equal machines to both."""
         return self.rtl.attach(config) + self.model.attach(config)

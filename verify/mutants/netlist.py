@@ -23,7 +23,7 @@ from passo.toolchain import environment, paths
 
 from verify.mutants.cells import kind_of, numbered, targets
 from verify.mutants.fates import BUILD, hash_of
-from verify.soak.parts import MACHINE, SETS
+from verify.soak.parts import MACHINE, SETS, TRACKER_SETS
 
 SELECT = "passo_mutant"
 WIDTH = 12  # of SELECT
@@ -89,12 +89,21 @@ PLAIN = Core(
         *("passo_axes", "passo_axis", "passo_axis_registers", "passo_axis_settings", "passo_positions"),
     ),
 )
+# Only the trackers: the mutants of the other modules, and their fates, are those of cores without.
+TRACKED = Core(
+    "tracked",
+    TRACKER_SETS[0],
+    ("passo_tracker", "passo_trackers", "passo_tracker_join"),
+)
 # The wiring of a core is not the same with its parts.
 BOTH = ("passo_core", "passo_channel", "passo_channel_registers", "passo_axis_registers", "passo_spi_top")
 MACHINED = Core(
     "machine",
     MACHINE,
-    without=(*(module for module in PLAIN.modules if module not in BOTH), "passo_tables"),
+    without=(
+        *(module for module in PLAIN.modules if module not in BOTH),
+        *("passo_tables", *TRACKED.modules),
+    ),
 )
 # All channels that the tables can serve.
 CHANNELS = Core("channels", Parameters(8, 1, 7, 3, 4), ("passo_tables",))
@@ -103,7 +112,7 @@ WISHBONE = Core(
     "wishbone", Parameters(), ("passo_wishbone", "passo_words"), top="passo_wishbone", played=False
 )
 AXI_LITE = Core("axi_lite", Parameters(), ("passo_axi_lite",), top="passo_axi_lite", played=False)
-CORES = (PLAIN, MACHINED, CHANNELS, WISHBONE, AXI_LITE)
+CORES = (PLAIN, MACHINED, CHANNELS, TRACKED, WISHBONE, AXI_LITE)
 
 
 @dataclass(frozen=True)

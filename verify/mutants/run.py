@@ -35,6 +35,7 @@ from verify.mutants import (
     rtl_judge,
     shapes_judge,
     timings_judge,
+    trackers_judge,
 )
 from verify.mutants.fates import Fates, hash_of
 from verify.mutants.netlist import CORES, MOST, Core, Mutant, drawn, first_of, library
@@ -73,9 +74,10 @@ def run_core(core: Core, seed: int, each: int, only: Collection[str]) -> list[Sc
     first, second, third = rtl_judge.ROUNDS.get(core.name, rtl_judge.NONE)
     pins.judge(first)
     for check in (
+        trackers_judge.CHECK,
         *(frames_judge.CHECK, motions_judge.CHECK, timings_judge.CHECK, lines_judge.CHECK),
         *(shapes_judge.CHECK, corners_judge.CHECK, inputs_judge.CHECK, outputs_judge.CHECK),
-        *registers_judge.CHECKS,
+        *(*registers_judge.CHECKS, *trackers_judge.TABLES),
     ):
         engine_judge.judge(core, chosen, fates, verilated, seed, _say, check)
     pins.judge(second)

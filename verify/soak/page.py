@@ -23,6 +23,7 @@ CORE = {
 ON_MODEL = ("machine", "tries", "starts", "pokes")
 OTHERS = ("machine on verilator", "machine on icarus")
 DRIVER = ("endings", "sessions")
+TRACKERS = ("trackers", "trackers on verilator")
 Played = dict[str, Part]
 
 
@@ -86,12 +87,25 @@ and stops of milliseconds:
 {_table(("operation", *endings, "host fails"), rows)}"""
 
 
+def _trackers(played: Played) -> str:
+    counts = [played[name].counts for name in TRACKERS]
+    kinds = sorted({name for one in counts for name in one if name.startswith("both:")})
+    rows = [(name.removeprefix("both:"), *(_number(one[name]) for one in counts)) for name in kinds]
+    made = (("scenarios", "histories"), ("M clocks", "clocks"), ("steps", "steps"))
+    whole = [
+        (shown, *(_number(one[name] // (10**6 if name == "clocks" else 1)) for one in counts))
+        for shown, name in made
+    ]
+    return _table(("trackers", "model", "Verilator"), [*whole, *rows])
+
+
 def _sections() -> dict[str, tuple[Sequence[str], Callable[[Played], str]]]:
     """The parts that each needs."""
     return {
         "core": (tuple(CORE), _core),
         "machine": ((*ON_MODEL, *OTHERS), _machine),
         "driver": (DRIVER, _driver),
+        "trackers": (TRACKERS, _trackers),
     }
 
 

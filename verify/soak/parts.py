@@ -2,6 +2,7 @@
 """Histories on the model, through the driver, on Verilator and on Icarus Verilog."""
 
 import re
+import sys
 import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
@@ -10,7 +11,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from passo.build import Parameters, rtl_library
+from passo.build import Parameters, model_library, rtl_library
+from passo.cache import hash_of
 from passo.compiler import call, includes
 from passo.console import Estimate
 from passo.console import console as terminal
@@ -28,6 +30,12 @@ SETS = (
 DRIVER_SET = 2  # must match BRIDGE_SET in bridge.h
 # Must match scenario_machine_parameters() in scenario_machine.c.
 MACHINE = Parameters(1, 3, 7, 5, 5, inputs=1, encoders=1, outputs=1)
+# With trackers, a tick of 4 axes or of 8; played by trackers.py.
+TRACKER_SETS = (
+    Parameters(1, 4, 7, 5, 5, inputs=1, trackers=1),
+    Parameters(1, 5, 7, 5, 5, inputs=1, trackers=1),
+    Parameters(1, 1, 7, 5, 5, trackers=1),
+)
 CHUNK = 50  # histories per process
 
 
@@ -115,6 +123,25 @@ def play_endings(program: Path, kind: str, seed: int, histories: int, jobs: int)
         return lambda: play_kept(command, kind, seed)
 
     return _all(Part(kind), histories, (task(*chunk) for chunk in chunks(histories)), jobs)
+
+
+def play_trackers(seed: int, histories: int, jobs: int, rtl: bool = False) -> Part:
+    """Histories of paths and trackers, in Python, on the C model or also on Verilated cores."""
+    name = "trackers on verilator" if rtl else "trackers"
+    mutants = paths.root / "verify/mutants"
+    judges = [*mutants.glob("motions_judge.py"), *sorted(mutants.glob("trackers_*.py"))]
+    made = hash_of([model_library(), *judges, HERE / "trackers.py"], [])
+    more = [made, *(["--rtl"] if rtl else [])]
+    if rtl:
+        for parameters in TRACKER_SETS:
+            rtl_library(parameters)
+    play = play_program if rtl else play_kept
+
+    def task(first: int, count: int) -> Work:
+        command = [sys.executable, "-m", "verify.soak.trackers", str(seed), str(first), str(count), *more]
+        return lambda: play(command, name, seed)
+
+    return _all(Part(name), histories, (task(*chunk) for chunk in chunks(histories)), jobs)
 
 
 def play_machine_on_verilator(program: Path, seed: int, histories: int, jobs: int) -> Part:

@@ -53,7 +53,7 @@ class Failure:
     def again(self) -> str:
         """The command that reproduces it."""
         kind = self.part.split()[0]
-        kinds = (*KINDS, *DRIVER_KINDS)
+        kinds = (*KINDS, *DRIVER_KINDS, "trackers")
         more = " --driver" if kind == "driver" else f" --kind {kind}" if kind in kinds else ""
         return f"python -m verify.soak.run --seed {self.seed} --history {self.history}{more}"
 

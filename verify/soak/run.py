@@ -20,6 +20,7 @@ from passo.build import rtl_library
 from passo.output import write_json
 from passo.toolchain import paths
 
+from verify.soak import trackers
 from verify.soak.defects import catch_all
 from verify.soak.numbers import measure
 from verify.soak.page import write
@@ -32,6 +33,7 @@ from verify.soak.parts import (
     play_icarus,
     play_machine_on_verilator,
     play_model,
+    play_trackers,
     play_verilator,
 )
 from verify.soak.program import DRIVER_KINDS, KINDS, build, build_endings, playing
@@ -54,8 +56,10 @@ HISTORIES = {
     "pokes": 60,
     "machine on verilator": 170,
     "machine on icarus": 170,
+    "trackers": 100_000,
+    "trackers on verilator": 2_000,
 }
-PARTS = ("model", "driver", *DRIVER_KINDS, "verilator", "icarus", *KINDS, "defects")
+PARTS = ("model", "driver", *DRIVER_KINDS, "verilator", "icarus", *KINDS, "trackers", "defects")
 
 
 def soak(seed: int, only: Sequence[str], scale: float, jobs: int) -> bool:
@@ -83,6 +87,9 @@ def soak(seed: int, only: Sequence[str], scale: float, jobs: int) -> bool:
         machine.append(play_machine_on_verilator(program, seed, number, jobs))
         machine.append(play_icarus(program, seed, wanted["machine on icarus"], jobs, machine=True))
         numbers = measure(seed)
+    if "trackers" in only:
+        parts.append(play_trackers(seed, wanted["trackers"], jobs))
+        parts.append(play_trackers(seed, wanted["trackers on verilator"], jobs, rtl=True))
     caught = catch_all(seed, jobs) if "defects" in only else []
     made = report(seed, [*parts, *machine], caught, numbers)
     write_json(made, REPORT)
@@ -108,7 +115,9 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--history", type=int, help="play and print a single scenario")
     parser.add_argument("--driver", action="store_true", help="play the scenario through the driver")
-    parser.add_argument("--kind", choices=(*KINDS, *DRIVER_KINDS), help="play a scenario of this kind")
+    parser.add_argument(
+        "--kind", choices=(*KINDS, *DRIVER_KINDS, "trackers"), help="play a scenario of this kind"
+    )
     parser.add_argument("--only", default=",".join(PARTS), help="parts to play (default: %(default)s)")
     parser.add_argument("--scale", type=float, default=1.0, help="multiply the number of scenarios")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
@@ -121,6 +130,9 @@ def main() -> None:
     if arguments.history is not None and arguments.kind in DRIVER_KINDS:
         command = [build_endings(), arguments.kind, str(arguments.seed), str(arguments.history), "1"]
         sys.exit(subprocess.run(command).returncode)
+    if arguments.history is not None and arguments.kind == "trackers":
+        sys.argv[1:] = [str(arguments.seed), str(arguments.history), "1", "--print"]
+        trackers.main()
     if arguments.history is not None:
         command = [build(), str(arguments.seed), str(arguments.history), "1", "--print"]
         command += ["--driver"] if arguments.driver else []
