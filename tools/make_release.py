@@ -9,7 +9,7 @@ those of the commit. Uncommitted changes are an error.
 
     source/        the repository
     machines/      of each examples/machines/*.toml: bitstream, firmware, settings, wiring
-    sbom.json      CycloneDX: version and license of each Python package and each Debian tool
+    sbom.json      CycloneDX: version and license of each package of requirements*.txt and each Debian tool
     licenses/      of the Debian tools; those of the packages are in sbom.json
     tested.md      each promise, the command, the result, the date (tools/release.toml)
     SHA256SUMS     of all files
@@ -36,11 +36,11 @@ from passo.toolchain import paths, short
 
 PROMISES = paths.tools / "release.toml"
 MACHINES = sorted((paths.examples / "machines").glob("*.toml"))
+# What images are made with, and what every setup has.
 DEBIAN = (
-    "gcc-arm-none-eabi",
-    "libnewlib-arm-none-eabi",
-    "binutils-arm-none-eabi",
-)  # what images are made with
+    *("gcc-arm-none-eabi", "libnewlib-arm-none-eabi", "binutils-arm-none-eabi"),
+    *("python3", "iverilog", "g++", "make", "perl", "git", "liblz4-dev", "zlib1g-dev"),
+)
 # of a machine; the compiler also leaves files that contain paths
 SHIPPED = (".bin", ".bit", ".fs", ".hex", ".html", ".sh", ".svg", ".txt")
 COPYRIGHT = "/usr/share/doc/{}/copyright"
@@ -109,8 +109,22 @@ def debian_components() -> list[dict[str, object]]:
     return made
 
 
-def bill_of_materials(epoch: str) -> bytes:
-    """The tools that are installed now."""
+def pinned() -> set[str]:
+    """The names of all packages of requirements*.txt, in one spelling."""
+    lines = "\n".join(path.read_text(encoding="utf-8") for path in paths.root.glob("requirements*.txt"))
+    return {spelled(name) for name in re.findall(r"(?m)^([\w.-]+)==", lines)}
+
+
+def spelled(name: str) -> str:
+    """The name of a package, of which there are several spellings."""
+    return re.sub(r"[-_.]+", "-", name).lower()
+
+
+def bill_of_materials(epoch: str, complete: bool) -> bytes:
+    """The tools that the repository names; what else is installed does not count.
+
+    Raises Failure if it must be complete and one is not installed.
+    """
     program = Path(sys.executable).with_name("cyclonedx-py")
     options = (
         "--output-reproducible",
@@ -119,9 +133,18 @@ def bill_of_materials(epoch: str) -> bytes:
         paths.root / "pyproject.toml",
     )
     made = json.loads(call(program, "environment", *options, sys.executable, SOURCE_DATE_EPOCH=epoch))
-    # the project itself is the component of the metadata
-    others = [part for part in made["components"] if part["name"] != "passo"]
-    made["components"] = sorted((*others, *debian_components()), key=lambda part: part["bom-ref"])
+    named = pinned()
+    parts = [part for part in made["components"] if spelled(part["name"]) in named]
+    if complete and (missing := named - {spelled(part["name"]) for part in parts}):
+        raise Failure(f"not installed, but in requirements*.txt: {', '.join(sorted(missing))}")
+    parts += debian_components()
+    made["components"] = sorted(parts, key=lambda part: part["bom-ref"])
+    there = {part["bom-ref"] for part in (*parts, made["metadata"]["component"])}
+    made["dependencies"] = [
+        one | {"dependsOn": [ref for ref in one.get("dependsOn", ()) if ref in there]}
+        for one in made["dependencies"]
+        if one["ref"] in there
+    ]
     return json.dumps(made, indent=1, sort_keys=True).encode() + b"\n"
 
 
@@ -174,7 +197,7 @@ def make_release(out: Path, machines: bool = True) -> Path:
         os.environ["SOURCE_DATE_EPOCH"] = epoch
         with tempfile.TemporaryDirectory() as folder:
             files |= machine_files(Path(folder))
-    files["sbom.json"] = (bill_of_materials(epoch), 0)
+    files["sbom.json"] = (bill_of_materials(epoch, machines), 0)
     files["tested.md"] = (tested().encode(), 0)
     for part in debian_components():
         files[f"licenses/{part['name']}.txt"] = (Path(COPYRIGHT.format(part["name"])).read_bytes(), 0)
