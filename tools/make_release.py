@@ -29,6 +29,7 @@ import tempfile
 import tomllib
 from pathlib import Path
 
+from passo.console import stages
 from passo.failure import BadInputError, Failure
 from passo.make_command import make_machine
 from passo.output import write_bytes, write_text
@@ -193,10 +194,13 @@ def make_release(out: Path, machines: bool = True) -> Path:
     """Make the archive of HEAD; the machines are made of the sources as they are now."""
     epoch, name = git("log", "-1", "--format=%ct", "HEAD"), release_name()
     files = source_files()
+    tell = stages()
     if machines:
+        tell(f"release: {len(MACHINES)} machines")
         os.environ["SOURCE_DATE_EPOCH"] = epoch
         with tempfile.TemporaryDirectory() as folder:
             files |= machine_files(Path(folder))
+    tell("release: bill of materials")
     files["sbom.json"] = (bill_of_materials(epoch, machines), 0)
     files["tested.md"] = (tested().encode(), 0)
     for part in debian_components():
