@@ -27,7 +27,7 @@ def archive(folder: Path, **variables: str) -> Path:
     command = (sys.executable, "-c", CODE, folder)
     done = subprocess.run(command, cwd=paths.root, env=environment, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    return Path(done.stdout.strip())
+    return Path(done.stdout.splitlines()[-1])  # behind the stages
 
 
 def test_the_same_commit_makes_the_same_archive(tmp_path: Path) -> None:

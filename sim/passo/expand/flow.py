@@ -184,8 +184,8 @@ class _Builder:
         for opened in self.stack:
             if not opened.told:
                 word, end = opened.word, ENDS[opened.word.keyword]
-                error = ExpandError(word.place, LineError(f"{word.name} has no {end}"))
-                wrong.setdefault(word.place, error)
+                missing = ExpandError(word.place, LineError(f"{word.name} has no {end}"))
+                wrong.setdefault(word.place, missing)
         if wrong:
             raise ProgramError([*wrong.values(), *unreadable(self.program.lines)])
         return self.program
