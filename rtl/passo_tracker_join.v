@@ -36,34 +36,46 @@ module passo_tracker_join (
 );
 
   reg signed [2:0] owed;  // steps of the tracker that wait, signed
+  reg              some;  // owed is not 0
   reg              turned;  // the axis went against the path last
   reg              ready;  // a step may join, decided one clock ago
 
-  wire some = owed != 3'd0;
   wire several = owed[2] ? owed[1:0] != 2'd3 : owed[1];  // two or more
   wire many = owed == 3'sd3 || owed == -3'sd3;
   wire against = some & (owed[2] ^ path_down);
-  wire cancels = path_step & against;
-  wire joins = ready & ~path_step;
+  wire leaves = path_step ? against : ready;  // it cancels a step of the path, or joins
   wire may_join = (~waits & ~path_step) | many;
-  wire turns = joins ? against : path_step & ~against ? 1'b0 : turned & ~(path_moves & ~some);
+  wire turns = path_step ? turned & against : ready ? against : turned & ~(path_moves & ~some);
 
-  assign step_request = (path_step & ~against) | joins;
+  assign step_request = path_step ? ~against : ready;
   assign direction    = path_down ^ turns;
   assign owes         = some;
 
-  wire signed [2:0] done = joins | cancels ? (owed[2] ? 3'sd1 : -3'sd1) : 3'sd0;
-  wire signed [2:0] more = made ? (made_down ? -3'sd1 : 3'sd1) : 3'sd0;
+  reg signed  [2:0] change;
+
+  always @* begin
+    case ({leaves, made})
+      2'b00:   change = 3'sd0;
+      2'b01:   change = made_down ? -3'sd1 : 3'sd1;
+      2'b10:   change = owed[2] ? 3'sd1 : -3'sd1;
+      default: change = made_down == owed[2] ? 3'sd0 : made_down ? -3'sd2 : 3'sd2;
+    endcase
+  end
+
+  wire signed [2:0] owed_next = owed + change;
 
   always @(posedge clk) begin
-    ready  <= some & may_join & (~against | ~path_moves | several) & ~(joins | cancels | made | halt | rst);
+    ready  <= some & may_join & (~against | ~path_moves | several) & ~(leaves | made | halt | rst);
     turned <= turns;
-    owed   <= owed + done + more;
+    owed   <= owed_next;
+    some   <= owed_next != 3'sd0;
     if (path_moves) went_down <= path_down;
-    if (halt) owed <= 3'sd0;
+    if (halt || rst) begin
+      owed <= 3'sd0;
+      some <= 1'b0;
+    end
     if (rst) begin
       went_down <= 1'b0;
-      owed      <= 3'sd0;
       turned    <= 1'b0;
     end
   end
