@@ -125,13 +125,12 @@ def spelled(name: str) -> str:
 def license_files(name: str) -> dict[str, bytes]:
     """Those of an installed package, as members of the archive."""
     beside = [path for path in distribution(name).files or () if "licen" in path.name.lower()]
-    return (
-        {f"licenses/{name}.txt": b"\n".join(path.locate().read_bytes() for path in beside)} if beside else {}
-    )
+    text = b"\n".join(Path(str(path.locate())).read_bytes() for path in beside)
+    return {f"licenses/{name}.txt": text} if text else {}
 
 
 def bill_of_materials(epoch: str, complete: bool) -> dict[str, bytes]:
-    """The tools that the repository names, and licenses that are but files; what else is installed does not count.
+    """The tools that the repository names, whatever else is installed, and licenses that are but files.
 
     Raises Failure if it must be complete and one is not installed.
     """
