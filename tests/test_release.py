@@ -23,7 +23,8 @@ CODE += "; print(make_release(Path(sys.argv[1]), machines=False))"
 
 def archive(folder: Path, **variables: str) -> Path:
     """Of HEAD, whatever else was changed since; made in a process of its own."""
-    environment = {**os.environ, "PYTHONPATH": str(paths.root), **variables}
+    own = os.pathsep.join(map(str, (paths.root, paths.sim, paths.syn, paths.stm32_bridge)))
+    environment = {**os.environ, "PYTHONPATH": own, **variables}
     command = (sys.executable, "-c", CODE, folder)
     done = subprocess.run(command, cwd=paths.root, env=environment, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
