@@ -161,7 +161,7 @@ class _Run:
         self.parameters.leave_out(targets, any_name)
 
     def _stop(self, error: ExpandError) -> NoReturn:
-        """Where a program goes on is not known."""
+        """Where a program continues is not known."""
         told = ExpandError(error.place, f"{error.reason}; {STOPS}")
         self.refused.setdefault(error.place, told)
         raise _Stopped
