@@ -146,7 +146,7 @@ def bill_of_materials(epoch: str, complete: bool) -> dict[str, bytes]:
     parts = [part for part in made["components"] if spelled(part["name"]) in named]
     if complete and (missing := named - {spelled(part["name"]) for part in parts}):
         raise Failure(f"not installed, but in requirements*.txt: {', '.join(sorted(missing))}")
-    files = {}
+    files: dict[str, bytes] = {}
     for part in parts:
         if not part.get("licenses"):
             files |= license_files(part["name"])
