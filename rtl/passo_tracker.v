@@ -371,6 +371,7 @@ module passo_tracker #(
   wire    turn_over = slot == 5'd0;  // the sum of the lowest whole step of the position
   reg     write_enable;
   reg     read_state;
+  reg     read_position;
   integer j;
 
   always @(posedge clk) begin
@@ -426,16 +427,18 @@ module passo_tracker #(
     in_positions <= select && bus_address[7:3] == CHANNEL_TRACKER_POSITION_BASE[7:3];
     write_enable <= bus_write && in_state && !number[0];
     read_state <= bus_read && in_state && number[0];
+    read_position <= bus_read && in_positions;
 
-    // 0 unless it is addressed, for longer than a turn before it is read. Not torn: a read takes what was there before.
+    // It is addressed for longer than a turn before it is read. Not torn: a read takes what was there before.
     takes_upper <= slot == 5'd21 && !bus_read;
-    if (slot == 5'd21 && !bus_read) position[15:0] <= second_word & {16{in_positions}};
-    if (takes_upper) position[31:16] <= second_word & {16{in_positions}};
+    if (slot == 5'd21 && !bus_read) position[15:0] <= second_word;
+    if (takes_upper) position[31:16] <= second_word;
 
     if (rst) begin
-      write_enable <= 1'b0;
-      read_state   <= 1'b0;
-      position     <= 32'd0;
+      write_enable  <= 1'b0;
+      read_state    <= 1'b0;
+      read_position <= 1'b0;
+      position      <= 32'd0;
     end
   end
 
@@ -443,7 +446,8 @@ module passo_tracker #(
   wire [7:0] moves_padded = {{(8 - AXES) {1'b0}}, moves};
   wire [7:0] at_target_padded = {{(8 - AXES) {1'b0}}, at_target};
 
-  assign read_data = (read_state ? {8'd0, at_target_padded, moves_padded, enabled_padded} : 32'd0) | position;
+  assign read_data = (read_state ? {8'd0, at_target_padded, moves_padded, enabled_padded} : 32'd0)
+                     | (read_position ? position : 32'd0);
 
 endmodule
 `resetall

@@ -71,8 +71,8 @@ def test_every_port_has_a_pin_of_its_own(board: Board) -> None:
         assert dict(found) == {port: pin.pin for port, pin in board.ports(axes).items()}
 
 
-WITH_PARTS = [(board, (part,)) for board in BOARDS for part in board.parts]
-WITH_PARTS += [(board, tuple(board.parts)) for board in BOARDS if board.name == "hx8k"]
+WITH_PARTS = [(board, (part,)) for board in BOARDS for part in (*board.parts, "trackers")]
+WITH_PARTS += [(board, (*board.parts, "trackers")) for board in BOARDS if board.name == "hx8k"]
 
 
 @pytest.mark.parametrize(
@@ -93,7 +93,9 @@ def test_every_port_of_a_part_has_a_pin_of_its_own(board: Board, parts: tuple[st
 def test_parts_are_chosen_by_name(made_up: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Unknown ones, those without pins, too few pins and too many are reported."""
     assert synth.main(["--board", "made_up", "--parts", "inputs,lasers"]) == 2
-    assert "unknown part 'lasers'; must be one of inputs, encoders, outputs" in capsys.readouterr().err
+    assert (
+        "unknown part 'lasers'; must be one of inputs, encoders, outputs, trackers" in capsys.readouterr().err
+    )
     assert synth.main(["--board", "made_up", "--parts", "inputs"]) == 2
     assert "'made_up': the table has no pins for part 'inputs'; it has none" in capsys.readouterr().err
     table = MADE_UP + "[encoders]\nencoder_a = [23, 25]\nencoder_b = [26]\nencoder_index = 27\n"
@@ -204,6 +206,7 @@ def test_top_elaborates(board: Board) -> None:
         ("tangnano9k", ["inputs", "outputs"]),
         ("icebreaker", ["outputs"]),
         ("icebreaker", ["inputs", "outputs"]),
+        ("colorlight", ["trackers"]),
     ],
 )
 def test_top_elaborates_with_parts(name: str, parts: list[str]) -> None:
@@ -214,6 +217,7 @@ def test_top_elaborates_with_parts(name: str, parts: list[str]) -> None:
     widths = Counter(re.sub(r"\[\d+\]", "", port) for port in chosen.ports(axes, parts))
     assert {port: len(facts["bits"]) for port, facts in top["ports"].items()} == widths
     core = top["cells"]["u_core"]["connections"]
+    assert top["cells"]["u_core"]["parameters"]["TRACKERS"].endswith("1") == ("trackers" in parts)
     if "inputs" in parts:
         assert (set(core["alarm"]) == {"0"}) == (name == "icebreaker")
 
@@ -366,6 +370,7 @@ def test_boards_are_listed_and_unknown_ones_refused(capsys: pytest.CaptureFixtur
     """`make synth` without a board tells which there are; so does the error."""
     assert synth.main([]) == 0
     listed = capsys.readouterr().out
+    assert "every board, without pins: PARTS=trackers" in listed
     assert all(board.name in listed and board.title in listed for board in BOARDS)
     assert synth.main(["--board", "nowhere"]) == 2
     assert "unknown board 'nowhere'; must be one of" in capsys.readouterr().err

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Trackers of the driver (stm32_bridge/driver/passo_track.h): a second hand beside moves and stops."""
 
+import math
 import random
+from fractions import Fraction
 from typing import Any
 
 import pytest
@@ -9,6 +11,7 @@ from passo.build import Parameters
 from passo.driver import Driver
 from passo.engine import model_engine
 from passo.machine import Machine, Switch
+from passo.native import ffi, planner
 from passo.registers import Cause, State, TriggerSource
 
 from tests.helpers.driver_wire import CLOCK_HZ, Q32, Wire, by_speed, error_of, open_driver, struct
@@ -213,3 +216,34 @@ def test_what_a_tracker_cannot_do_is_refused() -> None:
     plain = open_driver(Wire(Parameters()))
     assert error_of(plain, "track_to", track(), 5) == "NO_TRACKERS"
     assert wire.counted()[1] == [1000, 0, 0, 0]
+
+
+def test_targets_of_a_table() -> None:
+    """As exact fractions say, halves up; beyond its ends those of the ends, at any position."""
+    rng = random.Random(f"table {SEED}")
+    at, edge = planner().passo_track_at, 1 << 31
+    for number in range(300):
+        points, wide = rng.randint(1, 9), number % 3 == 0
+        targets = [rng.choice([-32768, 32767, rng.randint(-40, 40)]) for _ in range(points)]
+        begin = rng.choice([-edge, edge - 1, rng.randint(-500, 500)]) if wide else rng.randint(-500, 500)
+        pitch = rng.choice([1, edge, 2 * edge - 1, rng.randint(1, 300)]) if wide else rng.randint(1, 300)
+        values = ffi().new("int16_t[]", targets)
+        table = struct("track_table", targets=values, points=points, begin=begin, pitch=pitch)
+        places = [-edge, edge - 1, begin, *(rng.randint(-edge, edge - 1) for _ in range(5))]
+        places += [begin + rng.randint(-50, points * pitch) for _ in range(40)]
+        for place in places:
+            if not -edge <= place < edge:
+                continue
+            point, rest = divmod(place - begin, pitch)
+            if place <= begin:
+                wanted = Fraction(targets[0])
+            elif point >= points - 1:
+                wanted = Fraction(targets[-1])
+            else:
+                wanted = targets[point] + Fraction((targets[point + 1] - targets[point]) * rest, pitch)
+            assert at(table, place) == math.floor(wanted + Fraction(1, 2)), (targets, begin, pitch, place)
+    empty = struct("track_table", targets=ffi().NULL, points=0, begin=0, pitch=5)
+    assert at(empty, 7) == 0
+    values = ffi().new("int16_t[]", [3, 9])
+    even = struct("track_table", targets=values, points=2, begin=0, pitch=0)
+    assert at(even, 7) == 3

@@ -166,7 +166,7 @@ def scene_report(name: str, page: Path) -> SceneRun:
     return run
 
 
-@pytest.mark.parametrize("name", ["homing", "laser", "closed_loop", "threading"])
+@pytest.mark.parametrize("name", ["homing", "laser", "closed_loop", "threading", "feeder"])
 def test_a_machine(browser: Browser, tmp_path: Path, name: str) -> None:
     """Every edge of every pin that is shown, the samples of the encoders, events and stops."""
     run = scene_report(name, tmp_path / "page.html")
@@ -191,11 +191,18 @@ def test_a_machine(browser: Browser, tmp_path: Path, name: str) -> None:
         assert np.array_equal(numbers(browser, f"{own}.measured"), measured)
         assert np.array_equal(numbers(browser, f"{own}.error"), curve.made - curve.measured)
         assert np.array_equal(numbers(browser, f"{own}.clocks"), curve.clocks)
+    for number, tracker in enumerate(run.setup.trackers):
+        own = f"passo.motion.machine.trackers[{number}]"
+        assert np.array_equal(numbers(browser, f"{own}.tracked"), run.tracked["position"][:, tracker.axis])
+        assert np.array_equal(numbers(browser, f"{own}.clocks"), run.tracked["clock"] - run.start)
     text = browser.value("document.getElementById('events').textContent")
     assert all(stop.cause.name in text for stop in run.stops)
-    assert text.count("event ") >= len(run.events) and text.count("begins") == len(run.sections)
+    assert text.count("event ") + text.count("track ") >= len(run.events) and text.count("begins") == len(
+        run.sections
+    )
     panels = browser.value("Array.from(document.querySelectorAll('section.panel'), panel => panel.id)")
     assert "signals" in panels and ("power" in panels) == run.setup.has_outputs
+    assert ("trackers" in panels) == bool(run.setup.trackers)
     assert ("following" in panels) == ("measured" in panels) == bool(run.setup.encoders)
     ends = all(map(run.sought, run.stops))
     assert browser.value("document.getElementById('verdict').className") == ("good" if ends else "stopped")

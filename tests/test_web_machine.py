@@ -148,7 +148,7 @@ speeed = 1 | acceleraton = 1 | [axis] | [[axis]] | [pins] | [spindle]
 [home] | [home | [[axis] | = 1 | a | a.b = 1
 [pins]⏎step_high = "1us" | [pins]⏎step_high = "7 s" | [[motors]]
 pins.step_low = 1 | "quoted key" = 1 | key = 1 2
-motors = 3 | encoders = [1]⏎following = 1 | jerk = 100
+motors = 3 | encoders = [1]⏎following = 1 | jerk = 100 | backlash = 0.1 | take_up = 2
 home = "low" | laser = 1 | probe = true | [switches]⏎stop = 0
 board = "ulx3s" | board = "tangnano9k" | drive = "TB6600"
 spindle_wait = 1 | spindle_wait = 61 | spindle_at_speed = 1 | spindle_at_speed = 9

@@ -31,7 +31,7 @@ EXAMPLES = (
     *("exact_time", "turn", "sigmoid_alpha", "seven_phases", "straight", "user_shape", "four_motors"),
 )
 # examples with a machine or events
-MACHINES = ("homing", "probing", "hold_and_estop", "closed_loop", "laser", "threading")
+MACHINES = ("homing", "probing", "hold_and_estop", "closed_loop", "laser", "feeder", "threading")
 PROGRAMS = {"engraving": "corexy"}  # G-code and its machine
 GANTRY = "gantry"  # a machine that is homed
 ALL = (*EXAMPLES, *MACHINES, *PROGRAMS, GANTRY)

@@ -18,6 +18,8 @@ from passo.move_file import read_pins
 from passo.moves import PinTiming
 from passo.path import Motors, PathAxis, PathSettings
 from passo.registers import CHANNEL_ENCODER_FILTER_FILTER_RESET as ENCODER_FILTER
+from passo.run import parameters_for
+from passo.setup_tracks import BACKLASH_MAX, check_limits
 from passo.table_values import (
     Table,
     check_known,
@@ -43,8 +45,9 @@ FILE_KEYS = (
 )
 AXIS_KEYS = (
     *("name", "steps_per_mm", "speed", "acceleration", "jerk", "jump", "travel", "home", "switches"),
-    *("motors", "offsets", "encoders", "following"),
+    *("motors", "offsets", "encoders", "following", "backlash", "take_up"),
 )
+BACKLASH_KEYS = ("backlash", "take_up")
 COUNTS, WANDER_MAX = range(64, 65536), 90
 SPINDLE_KEYS = ("counts", "start_up", "wander")
 MOTOR_KEYS = ("speed", "acceleration", "jerk")
@@ -78,6 +81,8 @@ class AxisEnds:
     offsets: tuple[float, ...] = ()  # mm, of each motor: its edge from that of the axis; none: 0
     encoders: tuple[float, ...] = ()  # counts per mm of that of each motor; 0, none: it has none
     following: float = 0  # mm that a motor may be from its encoder
+    backlash: float = 0  # mm that a tracker takes up where the axis turns
+    take_up: float = 0  # mm/s^2 of the tracker; 0: the acceleration of the axis
 
     @property
     def homing_switch(self) -> str | None:
@@ -186,6 +191,16 @@ class MachineFile:
         scales = self.settings.scales
         return {motor: _ratio(counts / scales[motor]) for motor, (counts, _) in self.encoders.items()}
 
+    @property
+    def trackers(self) -> dict[int, tuple[int, Fraction, Fraction]]:
+        """Motors whose trackers take up backlash: its steps, steps/s, steps/s^2."""
+        return {
+            motor: _take_up(axis, end)
+            for number, (axis, end) in enumerate(zip(self.settings.axes, self.ends, strict=True))
+            if end.backlash
+            for motor in self.motors_of(number)
+        }
+
     def motors_of(self, axis: int) -> list[int]:
         """The motors that an axis is named after: its own, and those behind the axes."""
         rows = self.settings.motors.map(len(self.ends))
@@ -226,8 +241,8 @@ class MachineFile:
         return self.settings.clock_hz
 
 
-def read_machine(path: Path) -> MachineFile:
-    """Read and check a machine file; raises BadInputError."""
+def read_machine(path: Path, takes_up: bool = False) -> MachineFile:
+    """Read and check a machine file; raises BadInputError, for backlash too unless the caller takes it up."""
     try:
         text = path.read_text(encoding="utf-8-sig")
         data = tomllib.loads(text, parse_float=Written)
@@ -240,12 +255,12 @@ def read_machine(path: Path) -> MachineFile:
     except (ValueError, RecursionError, ArithmeticError) as error:
         raise BadInputError(f"{path}: {str(error).splitlines()[0]}") from None
     try:
-        return _machine(path, data)
+        return _machine(path, data, takes_up)
     except BadValueError as error:
         raise BadInputError(f"{path}: {error}") from None
 
 
-def _machine(path: Path, data: Table) -> MachineFile:
+def _machine(path: Path, data: Table, takes_up: bool) -> MachineFile:
     check_known(data, FILE_KEYS)
     wanted_hz = read_clock_hz(data) if "clock_hz" in data or "board" not in data else None
     pins, enable_inverted = _pins(data)
@@ -261,7 +276,8 @@ def _machine(path: Path, data: Table) -> MachineFile:
         if profile == "jerk" and not axis.jerk:
             raise BadValueError(f'axis {number}: profile = "jerk" needs its jerk in mm/s^3')
     ends = tuple(
-        within(f"axis {number}", lambda table=table: _ends(table)) for number, table in enumerate(tables, 1)
+        within(f"axis {number}", lambda table=table: _ends(table, takes_up))
+        for number, table in enumerate(tables, 1)
     )
     kinematics, motors = _motors(data, letters, axes, ends)
     switches = _switches(data)
@@ -278,6 +294,11 @@ def _machine(path: Path, data: Table) -> MachineFile:
     check_pins(settings, timing)
     for number, (axis, end) in enumerate(zip(axes, ends, strict=True), 1):
         within(f"axis {number}", lambda axis=axis, end=end: _check_encoders(axis, end, clock_hz))
+        shared = number - 1 in KINEMATICS[kinematics]
+        within(
+            f"axis {number}",
+            lambda axis=axis, end=end, shared=shared: _check_backlash(axis, end, count, clock_hz, shared),
+        )
     if switches.soft_limits and not any(end.home for end in ends):
         raise BadValueError("soft_limits: no axis has a home")
     tolerance = _number(data, "arc_tolerance", ARC_TOLERANCE)
@@ -442,6 +463,7 @@ def _parts(
         "inputs": switches.probe or any(end.switches for end in ends) or at_speed > 0,
         "encoders": has_spindle or any(end.encoders for end in ends),
         "outputs": spindle_maximum > 0,
+        "trackers": any(end.backlash for end in ends),
     }
     return tuple(part for part, needed in needs.items() if needed)
 
@@ -556,7 +578,7 @@ def _switches(data: Table) -> Switches:
     )
 
 
-def _ends(table: Table) -> AxisEnds:
+def _ends(table: Table, takes_up: bool) -> AxisEnds:
     home, switches = table.get("home"), table.get("switches", [])
     if home is not None and home not in HOME_ENDS:
         raise BadValueError(f'home must be "low" or "high", not {shown(home)}')
@@ -571,10 +593,15 @@ def _ends(table: Table) -> AxisEnds:
     ends = AxisEnds(
         *(travel, home, tuple(switches), motors, _of_motors(table, "offsets", motors)),
         *(_of_motors(table, "encoders", motors), _number(table, "following", 0)),
+        *(_number(table, key, 0) for key in BACKLASH_KEYS),
     )
     _check_following(ends)
     if ends.homing_switch not in (None, *switches):
         raise BadValueError(f'home = "{home}" needs "home" or "{ends.homing_switch}" in switches')
+    if given := [key for key in BACKLASH_KEYS if key in table and not takes_up]:
+        raise BadValueError(f"{given[0]}: only passo run with G-code takes backlash up")
+    if ends.take_up and not ends.backlash:
+        raise BadValueError("take_up needs backlash")
     return ends
 
 
@@ -614,6 +641,26 @@ def _check_encoders(axis: PathAxis, ends: AxisEnds, clock_hz: int) -> None:
         ratio = counts / float(axis.steps_per_mm)
         if not 1 <= _ratio(ratio) < 1 << 32:
             raise BadValueError(f"encoders: {ratio:g} counts per step cannot be set")
+
+
+def _take_up(axis: PathAxis, end: AxisEnds) -> tuple[int, Fraction, Fraction]:
+    """Steps of the backlash; speed and acceleration of the tracker, steps/s, steps/s^2."""
+    scale, speed = Fraction(axis.steps_per_mm), Fraction(axis.speed)
+    acceleration = Fraction(end.take_up) if end.take_up else Fraction(axis.acceleration)
+    return round(end.backlash * float(scale)), speed * scale, acceleration * scale
+
+
+def _check_backlash(axis: PathAxis, end: AxisEnds, count: int, clock_hz: int, shared: bool) -> None:
+    """The trackers of a core of this many axes or more can take it up."""
+    if not end.backlash:
+        return
+    if shared:
+        raise BadValueError("backlash: the axis shares its motors with another one")
+    steps, speed, acceleration = _take_up(axis, end)
+    if not 1 <= steps <= BACKLASH_MAX:
+        raise BadValueError(f"backlash is {steps} steps; must be 1 to {BACKLASH_MAX}")
+    axes = parameters_for(count).axes
+    within("backlash", lambda: check_limits(speed, acceleration, axes, clock_hz))
 
 
 def _number(table: Table, key: str, default: float) -> float:

@@ -40,7 +40,7 @@ from passo.values import BadValueError, Written, meant, shown
 PIN_SECONDS = Fraction(1, 1_000_000)  # default of every pin time
 G_CODE = re.compile(r"^\s*(%|\(.*\)|;.*|N?\d*\s*[GMT]\d+(\s.*)?)$", re.MULTILINE)
 
-FILE_KEYS = ("clock_hz", "together", "pins", "move", "machine", "event")
+FILE_KEYS = ("clock_hz", "together", "pins", "move", "machine", "event", "track")
 PIN_KEYS = tuple(field.name for field in fields(PinTiming))
 CHANNEL_KEYS = tuple(map(str, range(CHANNELS_MAX)))
 
@@ -62,7 +62,7 @@ def _alone(channels: Channels) -> MoveFile:
             f"{path}: it moves channel {channels.files[-1].channel}; only channel 0 is supported here"
         )
     if channels.setup:
-        raise MoveFileError(f"{path}: machine, events, home and probe are not supported here")
+        raise MoveFileError(f"{path}: machine, events, trackers, home and probe are not supported here")
     return channels.files[0]
 
 

@@ -352,6 +352,23 @@ EVENTS = {
             Key("counts", "whole", "counts", low=-SIGNED_MAX, high=SIGNED_MAX),
         ),
     ),
+    "untrack": Form(
+        "untrack",
+        (
+            Key("time", "time", "time", factor="clock_hz", optional=True),
+            Key("position", "place", None, optional=True),
+            Key(
+                "trigger",
+                "word",
+                None,
+                choices=("limit_low", "limit_high", "home", "alarm", "probe"),
+                optional=True,
+            ),
+            Key("falling", "flag", None, default=False),
+            Key("at_axis", "axis", "at_axis", default=0),
+            Key("axis", "axis", "axis", default=0),
+        ),
+    ),
 }
 
 MACHINES = {
@@ -437,6 +454,31 @@ MACHINES = {
             Key("wander", "whole", "wander", default=0, low=0, high=90),
         ),
         (Rule("above_zero", "rpm", "rpm"),),
+    ),
+    "track": Form(
+        "track",
+        (
+            Key("time", "time", "time", factor="clock_hz", optional=True),
+            Key("position", "place", None, optional=True),
+            Key(
+                "trigger",
+                "word",
+                None,
+                choices=("limit_low", "limit_high", "home", "alarm", "probe"),
+                optional=True,
+            ),
+            Key("falling", "flag", None, default=False),
+            Key("at_axis", "axis", "at_axis", default=0),
+            Key("axis", "axis", "axis", default=0),
+            Key("target", "place", None, default=0),
+            Key("speed", "number", "speed", factor=UNIT_Q32, optional=True),
+            Key("acceleration", "number", "acceleration", factor=UNIT_Q32, optional=True),
+            Key("backlash", "place", None, optional=True),
+        ),
+        (
+            Rule("above_zero", "speed", "speed"),
+            Rule("above_zero", "acceleration", "acceleration"),
+        ),
     ),
 }
 
@@ -753,6 +795,20 @@ class EventSlip:
 
 
 @dataclass(frozen=True)
+class EventUntrack:
+    """The tracker of an axis slows down and rests until its next target."""
+
+    time: Fraction | None
+    position: Place | None
+    trigger: str | None
+    falling: bool
+    at_axis: int
+    axis: int
+
+    form: ClassVar[Form] = EVENTS["untrack"]
+
+
+@dataclass(frozen=True)
 class MachineSettings:
     """Settings of the core, and the axes of the simulated machine."""
 
@@ -833,3 +889,21 @@ class MachineSpindle:
     wander: int
 
     form: ClassVar[Form] = MACHINES["spindle"]
+
+
+@dataclass(frozen=True)
+class MachineTrack:
+    """A target of the tracker of an axis, in steps of its own."""
+
+    time: Fraction | None
+    position: Place | None
+    trigger: str | None
+    falling: bool
+    at_axis: int
+    axis: int
+    target: Place
+    speed: Fraction | None
+    acceleration: Fraction | None
+    backlash: Place | None
+
+    form: ClassVar[Form] = MACHINES["track"]

@@ -23,6 +23,7 @@ from passo.failure import BadInputError
 from passo.gcode import NANOMETERS, GcodeError, has_words, lines
 from passo.host_loop import HostLoop
 from passo.machine_file import MachineFile
+from passo.moves import q32
 from passo.native import ffi
 from passo.pair_engine import PairEngine
 from passo.path import LOOK_AHEAD
@@ -116,6 +117,7 @@ class Played:
     canceled: str = ""  # where, if it was
     passes: Sequence[Pass] = ()
     counts: np.ndarray = field(default_factory=lambda: np.empty(0, CHANGE))  # of the encoder of the spindle
+    taken_up: dict[int, int] = field(default_factory=dict)  # steps of the trackers at the end, by motor
 
     @property
     def threads(self) -> int:
@@ -141,11 +143,15 @@ class Played:
         ends = settings.motors.map(axes) @ self.part.ends[:axes] * settings.scales
         for motor, exact in enumerate(ends.tolist()):
             made = int(self.positions[motor][-1]) if len(self.positions[motor]) else 0
-            if abs(made - exact) > 0.5 + 1e-6 or self.end[motor] != made:
+            taken_up = self.taken_up.get(motor, 0)
+            if abs(made - taken_up - exact) > 0.5 + 1e-6 or self.end[motor] + taken_up != made:
                 name = self.machine.motors[motor]
                 found.append(
                     f"motor {name} made {made} steps and counted {self.end[motor]}, wanted are {exact:g}"
                 )
+            if taken_up not in (0, -self.machine.trackers.get(motor, (0,))[0]):
+                name = self.machine.motors[motor]
+                found.append(f"motor {name}: its tracker ends at {taken_up}, neither 0 nor the backlash")
         return found
 
 
@@ -270,7 +276,12 @@ def core_of(machine: MachineFile) -> Parameters:
     """The core that plays parts; the encoder of a spindle is at the inputs behind the motors."""
     core = parameters_for(machine.core_axes)
     outputs = machine.turns or machine.spindle_wait > 0
-    return replace(core, encoders=int("encoders" in machine.parts), outputs=int(outputs))
+    return replace(
+        core,
+        encoders=int("encoders" in machine.parts),
+        outputs=int(outputs),
+        trackers=int("trackers" in machine.parts),
+    )
 
 
 def plan_part(
@@ -286,7 +297,7 @@ def plan_part(
 
 
 def configure(driver: Driver, machine: MachineFile, **fields: Any) -> None:
-    """Pins, stops and encoders; `fields` are further members of struct passo_axis_config."""
+    """Pins, stops, encoders and backlash; `fields` are further members of struct passo_axis_config."""
     for motor in range(len(machine.motors)):
         driver.configure_axis(motor, machine.pins, **fields)
     slew = machine.clock_hz // SLEWS_PER_SECOND
@@ -295,6 +306,11 @@ def configure(driver: Driver, machine: MachineFile, **fields: Any) -> None:
         _, limit = machine.encoders[motor]
         config = {"ratio": ratio, "limit": limit, "stop": driver.lib.PASSO_FOLLOWING_SOFT}
         driver.call("configure_encoder", motor, ffi().new("struct passo_encoder_config *", config))
+    for motor, (backlash, speed, acceleration) in machine.trackers.items():
+        limits = {"top_speed": q32(speed), "acceleration": q32(acceleration)}
+        track = ffi().new("struct passo_track *", limits | {"axis": motor, "backlash": backlash})
+        driver.call("configure_tracker", track)
+        driver.call("track_to", track, 0)
 
 
 def play_part(
@@ -351,6 +367,7 @@ def play_part(
     except KeyboardInterrupt:
         canceled = str(part.places[taken - 1])
     loop.run(8 * sum(vars(machine.pins).values()))
+    taken_up = _taken_up(driver, machine, loop)
     snapshot, end = driver.snapshot(), driver.positions()[:motors]
     cause, matched = driver.cause.name, getattr(engine, "matched_edges", None)
     steps = loop.steps(motors)
@@ -360,13 +377,29 @@ def play_part(
     return Played(
         *(part, machine, steps.clocks, steps.positions, motions, end, drained, cause, matched),
         *(steps.events, steps.origin, _following(driver, machine), canceled),
-        *([passes.found, spindle.changes()] if spindle else []),
+        passes.found if spindle else (),
+        spindle.changes() if spindle else np.empty(0, CHANGE),
+        taken_up,
     )
 
 
 def slow(machine: MachineFile) -> str:
     """The spindle was not at its speed in time."""
     return SLOW.format(input=machine.spindle_at_speed, seconds=f"{machine.spindle_wait:g}")
+
+
+def _taken_up(driver: Driver, machine: MachineFile, loop: HostLoop) -> dict[int, int]:
+    """Steps of the trackers, once they rest."""
+    found = {}
+    for motor in machine.trackers:
+        reading = ffi().new("struct passo_track_reading *")
+        for _ in range(LOOPS_PER_SECOND):
+            driver.call("read_tracker", motor, reading)
+            if not reading.moves:
+                break
+            loop.run(machine.clock_hz // LOOPS_PER_SECOND)
+        found[motor] = reading.position
+    return found
 
 
 def _following(driver: Driver, machine: MachineFile) -> dict[str, float]:

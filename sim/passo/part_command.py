@@ -21,7 +21,7 @@ from passo.grbl_setup import attach_encoders
 from passo.machine_file import MachineFile, read_machine
 from passo.output import empty_folder, write_json
 from passo.part import Lines, Part, Played, core_of, plan_part, play_part, read_part
-from passo.part_judge import greatest, shares_of
+from passo.part_judge import beside, greatest, shares_of
 from passo.part_page import write_part_page
 from passo.path import LOOK_AHEAD
 from passo.report import write_rows
@@ -86,7 +86,7 @@ def machine_of(files: Sequence[Path], path: Path | None, inputs: int | None = No
     """The machine that a part needs, with the levels that M66 reads; raises BadInputError."""
     if path is None:
         raise BadInputError(f"{files[0]}: G-code needs --machine MACHINE.toml (docs/gcode.md)")
-    machine = read_machine(path)
+    machine = read_machine(path, takes_up=True)
     return replace(machine, gcode=replace(machine.gcode, levels=inputs))
 
 
@@ -123,8 +123,10 @@ def play_to(
             played = play_part(part, machine, core, report, asked.look_ahead)
     if window:
         write_view(out, parameters, machine.clock_hz, {0: len(machine.motors)}, played.origin)
-    judged = [] if played.canceled else shares_of(played)  # it does not come to rest
-    summary = _summary(part, machine, played, engine, judged, played.problems() + faults(judged))
+    alone = _alone(part, machine, asked.look_ahead) if machine.trackers and not played.canceled else played
+    judged = [] if played.canceled else shares_of(alone)  # it does not come to rest
+    found = played.problems() + faults(judged) + beside(played, alone)
+    summary = _summary(part, machine, played, engine, judged, found)
     summary |= {"tools": course.tools(), "levels": course.levels()}
     write_pulses(played, out / PULSES)
     write_json(summary, out / SUMMARY)
@@ -135,6 +137,14 @@ def play_to(
     if asked.report:
         write_part_page(played, summary, out / PAGE)
     return played, judged, summary
+
+
+def _alone(part: Part, machine: MachineFile, look_ahead: int) -> Played:
+    """The same path of a machine without backlash, whose pulses are those of the path."""
+    plain = replace(machine, ends=tuple(replace(end, backlash=0, take_up=0) for end in machine.ends))
+    with open_engine("model", core_of(plain), machine.clock_hz) as core:
+        attach_encoders(core, plain)
+        return play_part(part, plain, core, look_ahead=look_ahead)
 
 
 def write_pulses(played: Played, path: Path) -> None:
@@ -175,6 +185,7 @@ def _summary(
         "limits": {name: asdict(share) for name, share in greatest(judged).items()},
         "highest": _highest(machine, judged),
         "following": played.following,
+        "taken_up": {machine.motors[motor]: steps for motor, steps in played.taken_up.items()},
     }
 
 

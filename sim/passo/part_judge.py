@@ -13,6 +13,8 @@ from passo.native import planner
 from passo.part import Part, Played
 from passo.path_rounding import Line
 
+WAITS = 2  # steps that wait
+
 
 @dataclass(frozen=True)
 class Thread:
@@ -72,6 +74,29 @@ def shares_of(played: Played) -> list[Share]:
         marks = marks.with_more(_in_step(played, threads))
     turning = sum(vars(played.machine.pins).values())
     return shares(played.clocks, played.positions, settings, marks, turning=turning)
+
+
+def beside(played: Played, alone: Played) -> list[str]:
+    """What trackers that take up backlash have done to the path besides, one sentence each.
+
+    `alone` is the path without them: each motor is where that is, or lower by up to its backlash; a step may
+    wait for one of the other hand, and where DIR turns.
+    """
+    found = []
+    if played.seconds != alone.seconds:
+        found.append(f"the path took {played.seconds:.9f} s, without backlash {alone.seconds:.9f} s")
+    for motor, (clocks, places) in enumerate(zip(played.clocks, played.positions, strict=True)):
+        backlash = played.machine.trackers.get(motor, (0,))[0]
+        at = np.union1d(clocks, alone.clocks[motor])
+        off = _places(clocks, places, at) - _places(alone.clocks[motor], alone.positions[motor], at)
+        if off.min(initial=0) < -backlash - WAITS or off.max(initial=0) > WAITS:
+            name, far = played.machine.motors[motor], f"{off.min():g} to {off.max():g} steps"
+            found.append(f"motor {name} is {far} from its path; its backlash is {backlash}")
+    return found
+
+
+def _places(clocks: np.ndarray, places: np.ndarray, at: np.ndarray) -> np.ndarray:
+    return np.concatenate([[0], places])[np.searchsorted(clocks, at, side="right")]
 
 
 def _in_step(played: Played, threads: Sequence[Thread]) -> list[tuple[np.ndarray, np.ndarray]]:

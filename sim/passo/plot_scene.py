@@ -19,12 +19,14 @@ from passo.scene_panels import (
     plot_scene_position,
     plot_scene_power,
     plot_scene_speed,
+    plot_scene_trackers,
     plot_signals,
 )
 from passo.scene_report import said
 from passo.scene_run import SceneRun
 
 EVENT_COLOR = "#6639ba"
+STOPPED = "■"
 BADGE = {"boxstyle": "circle,pad=0.25", "facecolor": EVENT_COLOR, "edgecolor": "white", "linewidth": 1}
 LABEL = {"boxstyle": "round,pad=0.25", "facecolor": "white", "edgecolor": STOP, "linewidth": 0.8}
 
@@ -34,6 +36,8 @@ def plot_scene(run: SceneRun, path: Path) -> None:
     heights = {"speed": 1.5, "position": 1.3}
     if run.setup.encoders:
         heights["encoder"] = 1.0
+    if run.setup.trackers:
+        heights["tracker"] = 0.8
     if run.setup.has_outputs:
         heights["power"] = 0.8
     lanes = lanes_of(run)
@@ -54,15 +58,17 @@ def plot_scene(run: SceneRun, path: Path) -> None:
         plot_scene_position(axes["position"], run)
         if run.setup.encoders:
             plot_scene_encoder(axes["encoder"], run)
+        if run.setup.trackers:
+            plot_scene_trackers(axes["tracker"], run)
         if run.setup.has_outputs:
             plot_scene_power(axes["power"], run)
-        end = run.total_clocks * 1.02
-        plot_signals(axes["lanes"], run, lanes, -0.01 * run.total_clocks, end, 1 / run.file.clock_hz)
+        end = run.shown_clocks * 1.02
+        plot_signals(axes["lanes"], run, lanes, -0.01 * run.shown_clocks, end, 1 / run.file.clock_hz)
         axes["lanes"].set_title("Inputs and drives")
         axes["lanes"].set_xlabel("s")
         shared = [axes[name] for name in heights if name != "zoom"]
         for ax in shared:
-            ax.set_xlim(-0.01 * run.total_clocks / run.file.clock_hz, end / run.file.clock_hz)
+            ax.set_xlim(-0.01 * run.shown_clocks / run.file.clock_hz, end / run.file.clock_hz)
             _marks(ax, run)
             if ax is not shared[-1]:
                 ax.tick_params(labelbottom=False)
@@ -86,7 +92,7 @@ def _head(figure: plt.Figure, run: SceneRun, listed: list[tuple[str, str]]) -> N
     figure.text(0.012, 1 - 0.28 / inches, title, fontsize=13, fontweight="bold")
     for line, (mark, text) in enumerate(listed):
         y = 1 - (0.55 + 0.19 * line) / inches
-        color = EVENT_COLOR if mark.isdigit() else STOP
+        color = STOP if mark == STOPPED else EVENT_COLOR
         figure.text(0.024, y, mark, color=color, fontweight="bold", ha="center")
         figure.text(0.036, y, text)
 
@@ -98,12 +104,12 @@ def _listing(run: SceneRun) -> list[tuple[str, str]]:
     for happened in run.events:
         if happened.clock is not None:
             clock = happened.clock - run.start
-            found.append((clock, str(happened.number), f"{clock / hz:.6f} s  {said(happened)}"))
+            found.append((clock, happened.mark, f"{clock / hz:.6f} s  {said(happened)}"))
     for stop in run.stops:
         if not run.sought(stop):
             clock = stop.clock - run.start
             where = ", ".join(map(str, stop.positions))
-            found.append((clock, "■", f"{clock / hz:.6f} s  stop {stop.cause.name} at {where}"))
+            found.append((clock, STOPPED, f"{clock / hz:.6f} s  stop {stop.cause.name} at {where}"))
     return [(mark, text) for _, mark, text in sorted(found)]
 
 
@@ -128,7 +134,7 @@ def _badges(ax: Axes, run: SceneRun) -> None:
     for happened in run.events:
         if happened.clock is not None:
             ax.annotate(
-                str(happened.number), ((happened.clock - run.start) / hz, 0.93), xycoords=top, color="white",
+                happened.mark, ((happened.clock - run.start) / hz, 0.93), xycoords=top, color="white",
                 ha="center", va="center", fontsize=7.5, fontweight="bold", bbox=BADGE, zorder=6,
             )  # fmt: skip
     for stop in run.stops:
@@ -154,7 +160,7 @@ def _zooms(run: SceneRun) -> list[tuple[str, int, int]]:
         if others[-1].cause == Cause.FOLLOWING_ERROR:  # what it began with
             events = [one for one in run.events if one.clock is not None and one.clock <= others[-1].clock]
             if events:
-                clock, title = events[-1].clock - run.start, f"Event {events[-1].number}"
+                clock, title = events[-1].clock - run.start, events[-1].name.capitalize()
         found.append((title, clock - half, clock + half // 2))
     elif len(sought) > 1:
         edge = _edge_before(run, sought[-1].clock)

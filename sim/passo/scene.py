@@ -9,22 +9,31 @@ import numpy as np
 
 from passo.driver import DriverError, Source
 from passo.engine import EVENT, NUMBERS, Engine
-from passo.move_forms import EventArm, EventOverride
+from passo.move_forms import EventArm, EventOverride, EventUntrack, MachineTrack
 from passo.moves import Channels, MoveFileError
 from passo.native import ffi
 from passo.pair_engine import PairEngine
 from passo.registers import Cause, State, TriggerAction, TriggerSource
 from passo.rig import Rig
 from passo.run import CHUNK, RunError
-from passo.scene_driver import SceneDriver
+from passo.scene_driver import SceneDriver, track_of
 from passo.scene_plan import Raster, plan_sections
-from passo.scene_run import SAMPLE, Happened, Latch, SceneRun, Section, Stop
+from passo.scene_run import SAMPLE, TRACKED, Happened, Latch, SceneRun, Section, Stop, Tracker
 from passo.setup import Event
 
 POLLS_PER_SECOND = 1000
 POLL_CLOCKS_MIN = 2000  # some times the length of a frame
 SETTLE_CLOCKS = 256
-COMMANDS = ("hold", "resume", "override", "stop", "abort", "arm")  # events that the host carries out
+COMMANDS = (
+    "hold",
+    "resume",
+    "override",
+    "stop",
+    "abort",
+    "arm",
+    "track",
+    "untrack",
+)  # events that the host carries out
 SPINDLE = [NUMBERS[f"encoder_{line}"] for line in ("a", "b", "index")]  # turns continuously
 GIVE_UP_SECONDS = 2  # without a step, a change of an input or an event
 
@@ -47,6 +56,9 @@ class Scene:
         self.pins: list[np.ndarray] = []
         self.inputs: list[np.ndarray] = []
         self.samples: list[tuple[Any, ...]] = []
+        self.tracked: list[tuple[int, list[int]]] = []
+        self.targets = dict.fromkeys(self.setup.tracked, 0)
+        self.following: dict[int, MachineTrack] = {}  # targets in force, by axis
         self.stops: list[Stop] = []
         self.latches: list[Latch] = []
         self.troubles: list[str] = []
@@ -68,6 +80,7 @@ class Scene:
             if section.outcome != "OK":
                 break
         self._advance(max(8 * sum(vars(self.file.pins).values()), self.clock_hz // 500))
+        trackers = self._settle()
         positions = self.driver.positions()
         self.samples.append(self.driver.sample(self.axes))
         return SceneRun(
@@ -87,6 +100,8 @@ class Scene:
                 self.driver.greatest(one.axis, float(one.counts_per_step)) for one in self.setup.encoders
             ],
             troubles=self.troubles,
+            trackers=trackers,
+            tracked=np.array(self.tracked, TRACKED),
             matched_edges=self.engine.matched_edges if isinstance(self.engine, PairEngine) else None,
             clocks=self.engine.clock - start,
             seconds=time.monotonic() - began,
@@ -102,6 +117,10 @@ class Scene:
         if driver.snapshot().state == State.STOPPED:
             driver.attempt("clear")
         driver.configure(self.setup, self.file, self.sections)
+        for track in self.setup.trackers:
+            driver.call("configure_tracker", track_of(track))
+        for track in self.setup.tracks:
+            self._track(track)
 
     def _section(self, section: Section) -> None:
         section.begin = self.engine.clock
@@ -127,6 +146,7 @@ class Scene:
                 section.outcome = error.name
             if self.setup.encoders:
                 self.samples.append(self.driver.sample(self.axes))
+            self._look_at_trackers()
             self._advance(min(self.poll_clocks, self._patience()))
             self._look()
             if self.engine.clock - self.active_at > GIVE_UP_SECONDS * self.clock_hz:
@@ -136,6 +156,9 @@ class Scene:
                 )
         if section.outcome == "OK" and self.is_stopped:
             section.outcome = "STOPPED"
+        if section.outcome == "OK" and section.kind in ("home", "probe"):
+            for track in list(self.following.values()):  # at its edges it has stopped the trackers, too
+                self._track(track)
         section.end = self.engine.clock
 
     def _poll(self) -> None:
@@ -195,7 +218,7 @@ class Scene:
             try:
                 self._command(number, event)
             except DriverError as error:
-                self.troubles.append(f"event {number + 1}: {error.args[0]}")
+                self.troubles.append(f"{self.setup.names[number]}: {error.args[0]}")
             self.answers[number] = self.engine.clock
 
     def _command(self, number: int, event: Event) -> None:
@@ -211,6 +234,11 @@ class Scene:
             }
             self.driver.call("arm_trigger", ffi().new("struct passo_trigger_config *", fields))
             self.armed = number
+        elif isinstance(event, MachineTrack):
+            self._track(event)
+        elif isinstance(event, EventUntrack):
+            self.following.pop(event.axis, None)
+            self.driver.call("untrack", event.axis)
         elif name in COMMANDS:
             self.driver.call(name)
 
@@ -242,9 +270,35 @@ class Scene:
             )
         )
 
+    def _track(self, track: MachineTrack) -> None:
+        self.targets[track.axis] = int(track.target.value)
+        self.following[track.axis] = track
+        self.driver.call("track_to", track_of(track), self.targets[track.axis])
+
+    def _look_at_trackers(self) -> None:
+        if self.setup.trackers:
+            self.tracked.append((self.engine.clock, self.driver.tracker_positions()))
+
+    def _settle(self) -> list[Tracker]:
+        """Wait until the trackers rest."""
+        self.active_at = self.engine.clock
+        while True:
+            self._look_at_trackers()
+            readings = [self.driver.tracker(axis) for axis in self.setup.tracked]
+            if not any(reading.moves or (reading.enabled and not reading.at_target) for reading in readings):
+                break
+            if self.engine.clock - self.active_at > GIVE_UP_SECONDS * self.clock_hz:
+                break
+            self._advance(self.poll_clocks)
+        return [
+            Tracker(axis, reading.position, self.targets[axis], reading.at_target, reading.enabled)
+            for axis, reading in zip(self.setup.tracked, readings, strict=True)
+        ]
+
     def _happened(self, number: int) -> Happened:
         clock = self.rig.moment(number)
         positions = self.rig.moment_positions(number, self.axes) if clock is not None else []
         command = self.setup.events[number].form.name in COMMANDS
         answered = self.answers.get(number) if command else None
-        return Happened(number + 1, self.setup.events[number], clock, positions, answered)
+        name = self.setup.names[number]
+        return Happened(name, self.setup.events[number], clock, positions, answered)

@@ -50,7 +50,7 @@ def scene_data(channels: Channels, run: SceneRun, engine: str) -> tuple[dict[str
         "summary": summarize_scene(run, engine),
         "file": channels.path.name,
         "clock_hz": run.file.clock_hz,
-        "clocks": run.total_clocks,
+        "clocks": run.shown_clocks,
         "parameters": asdict(scene_parameters(channels)),
         "alpha_reset": 0,
         "runs": [
@@ -69,6 +69,7 @@ def scene_data(channels: Channels, run: SceneRun, engine: str) -> tuple[dict[str
             "signals": signals,
             "power": _power(run),
             "encoders": [_encoder(run, number) for number in range(len(run.setup.encoders))],
+            "trackers": [_tracker(run, axis) for axis in run.setup.tracked],
         },
     }
     packed = zlib.compress(np.concatenate([*streams, np.empty(0, np.uint8)]).tobytes(), 9)
@@ -105,6 +106,12 @@ def _encoder(run: SceneRun, number: int) -> dict[str, Any]:
     }
 
 
+def _tracker(run: SceneRun, axis: int) -> dict[str, Any]:
+    """Samples of the host."""
+    clocks = run.tracked["clock"].astype(np.int64) - run.start
+    return {"axis": axis, "clocks": clocks.tolist(), "tracked": run.tracked["position"][:, axis].tolist()}
+
+
 def _events(run: SceneRun) -> list[dict[str, Any]]:
     """What happened, in the order of the clocks."""
     found = []
@@ -119,7 +126,7 @@ def _events(run: SceneRun) -> list[dict[str, Any]]:
         add(section.begin - run.start, f"move {moves} {begins}{task}", "" if run.moved(section) else "stop")
     for happened in run.events:
         if happened.clock is not None:
-            add(happened.clock - run.start, f"event {happened.number}: {said(happened)}")
+            add(happened.clock - run.start, f"{happened.name}: {said(happened)}")
     for stop in run.stops:
         where = ", ".join(map(str, stop.positions))
         add(stop.clock - run.start, f"stop {stop.cause.name} at {where}", "" if run.sought(stop) else "stop")

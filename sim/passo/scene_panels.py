@@ -5,6 +5,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from passo.engine import NUMBERS
+from passo.move_forms import MachineTrack
 from passo.plot_panels import COLORS, INK, WIDE, WINDOWS, evened
 from passo.scene_figures import energies, mean_power
 from passo.scene_report import measured_curve, planned
@@ -48,7 +49,7 @@ def plot_scene_position(ax: Axes, run: SceneRun) -> None:
         scale = 1 / float(scales[axis]) if in_mm else 1
         clocks, directions = run.steps(axis)
         places = np.concatenate([[0], np.cumsum(directions, dtype=np.int64)]) + run.setup.start(axis)
-        times = np.concatenate([[0], clocks, [run.total_clocks]]) / hz
+        times = np.concatenate([[0], clocks, [run.shown_clocks]]) / hz
         places = np.append(places, places[-1])
         ax.step(times, places * scale, where="post", color=COLORS[axis], linewidth=1.1)
     for encoder in run.setup.encoders:
@@ -101,6 +102,25 @@ def plot_scene_encoder(ax: Axes, run: SceneRun) -> None:
         f"Measured less commanded curve (wide: {'; '.join(texts)}), steps less measured (thin), limit"
     )
     ax.set_ylabel("steps")
+
+
+def plot_scene_trackers(ax: Axes, run: SceneRun) -> None:
+    """Steps of the trackers, and where they were sent."""
+    hz = run.file.clock_hz
+    times = (run.tracked["clock"].astype(np.int64) - run.start) / hz
+    for track in run.setup.trackers:
+        axis = track.axis
+        scale = 1 / float(run.setup.scales[axis]) if run.setup.scales else 1
+        ax.plot(times, run.tracked["position"][:, axis] * scale, color=COLORS[axis], linewidth=1.1)
+        sent = sorted(
+            (happened.clock - run.start, int(happened.event.target.value))
+            for happened in run.events
+            if isinstance(happened.event, MachineTrack) and happened.event.axis == axis and happened.clock
+        )
+        at = np.array([(0, 0), *sent, (run.shown_clocks, sent[-1][1] if sent else 0)])
+        ax.step(at[:, 0] / hz, at[:, 1] * scale, where="post", color=COLORS[axis], **WIDE)
+    ax.set_title("Trackers: targets (wide) and steps (thin)")
+    ax.set_ylabel("mm" if run.setup.scales else "steps")
 
 
 def plot_scene_power(ax: Axes, run: SceneRun) -> None:

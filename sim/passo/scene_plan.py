@@ -11,16 +11,17 @@ from passo.registers import LineOutputWord
 from passo.scene_run import Section
 from passo.setup import Setup
 
-AXES_OF_CORES = (3, 4, 8)  # few, as each has to be built
 POWER_FULL = 65535  # on all the time
 REFERENCE_ANY = 1 << 31  # 1/2 substep per clock, the fastest
 
 
 def scene_parameters(channels: Channels) -> Parameters:
     """Parameters of the core used for a file with a machine."""
-    needed = channels.files[0].axes + bool(channels.setup and channels.setup.spindle)
-    axes = next(n for n in AXES_OF_CORES if n >= needed)
-    return Parameters(axes=axes, inputs=1, encoders=1, outputs=1)
+    assert channels.setup
+    has_trackers = bool(channels.setup.trackers)
+    return Parameters(
+        axes=channels.setup.core_axes, inputs=1, encoders=1, outputs=1, trackers=int(has_trackers)
+    )
 
 
 def plan_sections(file: MoveFile, setup: Setup, parameters: Parameters) -> list[Section]:

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from passo.curve import Curve
-from passo.move_forms import EventInput, EventOverride, EventSlip, MachineEncoder
+from passo.move_forms import EventInput, EventOverride, EventSlip, EventUntrack, MachineEncoder, MachineTrack
 from passo.report import summary_head, write_rows
 from passo.scene_figures import energies, thread_figures
-from passo.scene_run import Happened, SceneRun, Section, Stop
+from passo.scene_run import Happened, SceneRun, Section, Stop, Tracker
 from passo.verdict import scene_verdict
 
 
@@ -41,7 +41,7 @@ def measured_curve(run: SceneRun, encoder: MachineEncoder) -> Measured:
         if section.plans:
             inside, _, positions = planned(run, section, clocks - (section.begin - run.start))
             ideal[inside] = positions[encoder.axis] - run.setup.start(encoder.axis)
-            ideal[inside & (clocks > run.undisturbed(section) - run.start)] = np.nan
+            ideal[inside & (clocks > run.undisturbed(section, encoder.axis) - run.start)] = np.nan
     return Measured(clocks, measured, made, ideal)
 
 
@@ -85,7 +85,9 @@ def summarize_scene(run: SceneRun, engine: str) -> dict[str, Any]:
         "moves_not_begun": run.unmade,
         "axes": [_axis(run, axis) for axis in range(run.file.axes)],
         "moves": [_section(run, section) for section in run.sections],
-        "events": [_event(run, happened) for happened in run.events],
+        "events": [_event(run, happened) for happened in run.events if not happened.is_track],
+        "tracks": [_event(run, happened) for happened in run.events if happened.is_track],
+        "trackers": [_tracker(tracker) for tracker in run.trackers],
         "stops": [_stop(run, stop) for stop in run.stops],
         "triggers": [{"event": latch.number, "positions": latch.positions} for latch in run.latches],
         "energy": energies(run),
@@ -117,13 +119,22 @@ def _section(run: SceneRun, section: Section) -> dict[str, Any]:
 
 
 def _event(run: SceneRun, happened: Happened) -> dict[str, Any]:
-    made: dict[str, Any] = {"number": happened.number, "do": happened.event.form.name}
+    event = happened.event
+    made: dict[str, Any] = {"number": happened.number}
+    if isinstance(event, MachineTrack):
+        made |= {"axis": event.axis, "target": int(event.target.value)}
+    else:
+        made["do"] = event.form.name
     if happened.clock is None:
         return {**made, "clock": None}
     made |= {"clock": happened.clock - run.start, "machine_positions": happened.positions}
     if happened.answered is not None:
         made["command_clocks"] = happened.answered - happened.clock
     return made
+
+
+def _tracker(tracker: Tracker) -> dict[str, Any]:
+    return {"axis": tracker.axis, "position": tracker.position, "at_target": tracker.at_target}
 
 
 def _stop(run: SceneRun, stop: Stop) -> dict[str, Any]:
@@ -158,4 +169,8 @@ def said(happened: Happened) -> str:
         said += f" {event.percent} %"
     if isinstance(event, EventSlip):
         said += f" of axis {event.axis} by {event.counts} counts"
+    if isinstance(event, EventUntrack):
+        said += f" axis {event.axis}"
+    if isinstance(event, MachineTrack):
+        said = f"axis {event.axis} to {event.target.value}"
     return f"{said} at {', '.join(map(str, happened.positions))}"

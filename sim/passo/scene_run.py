@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from passo.move_forms import MachineTrack, MoveHome, MoveProbe
 from passo.moves import MoveFile, Task
 from passo.plan import Plan
 from passo.registers import Cause
@@ -13,6 +14,8 @@ from passo.setup import Event, Setup
 
 # What the host has read in one frame, all of one clock.
 SAMPLE = np.dtype([("clock", "u8"), ("position", "i4", 8), ("encoder", "i4", 8)])
+# What the trackers have made, read a frame later.
+TRACKED = np.dtype([("clock", "u8"), ("position", "i4", 8)])
 ROUND_CLOCKS = 64  # the core reads its positions in rounds from the reset on; docs/link.md
 CS_CLOCKS = 4  # until chip select is seen
 
@@ -57,11 +60,26 @@ class Stop:
 class Happened:
     """An event."""
 
-    number: int
+    name: str  # "event 1", or "track 1"
     event: Event
     clock: int | None  # None: it never occurred
     positions: list[int]  # of the machine
     answered: int | None = None  # clock at which the frame of a command ended
+
+    @property
+    def number(self) -> int:
+        """Of those of its kind in the file."""
+        return int(self.name.split()[1])
+
+    @property
+    def mark(self) -> str:
+        """In a picture: 1, or T1."""
+        return f"T{self.number}" if self.is_track else str(self.number)
+
+    @property
+    def is_track(self) -> bool:
+        """A target of a tracker."""
+        return isinstance(self.event, MachineTrack)
 
 
 @dataclass
@@ -70,6 +88,17 @@ class Latch:
 
     number: int  # of the event that armed it
     positions: list[int]  # as the driver counts them
+
+
+@dataclass
+class Tracker:
+    """A tracker at the end."""
+
+    axis: int
+    position: int
+    target: int  # the last one that it was sent to
+    at_target: bool
+    enabled: bool
 
 
 @dataclass
@@ -90,6 +119,8 @@ class SceneRun:
     machine: list[int]  # positions of the machine
     greatest: list[float]  # following error of each encoder in steps
     troubles: list[str]  # what a command or a read has met
+    trackers: list[Tracker]  # at the end, those that are used
+    tracked: np.ndarray  # TRACKED
     matched_edges: int | None
     clocks: int
     seconds: float
@@ -129,14 +160,25 @@ class SceneRun:
         """It was not refused."""
         return bool(((self.rises >= section.begin) & (self.rises <= section.end)).any())
 
+    @property
+    def plain_axes(self) -> list[int]:
+        """Axes whose steps are those of the path alone."""
+        return [axis for axis in range(self.file.axes) if axis not in self.setup.tracked]
+
+    @property
+    def shown_clocks(self) -> int:
+        """Clocks from the start to the end of the last motion, or of the last step of a tracker."""
+        ends = [int(self.steps(axis)[0].max(initial=0)) for axis in self.setup.tracked]
+        return max([self.total_clocks, *ends])
+
     def asked(self, section: Section) -> int:
-        """Steps of the moves of a section, of all axes."""
-        return sum(abs(steps) for move in section.moves for steps in move.steps)
+        """Steps of the moves of a section, of all axes without a tracker."""
+        return sum(abs(move.steps[axis]) for move in section.moves for axis in self.plain_axes)
 
     def made(self, section: Section) -> int:
-        """Steps at the pins during a section, of all axes."""
+        """Steps at the pins during a section, of all axes without a tracker."""
         first, last = section.begin - self.start, section.end - self.start
-        clocks = [self.steps(axis)[0] for axis in range(self.file.axes)]
+        clocks = [self.steps(axis)[0] for axis in self.plain_axes]
         return sum(int(((own >= first) & (own <= last)).sum()) for own in clocks)
 
     def sought(self, stop: Stop) -> bool:
@@ -144,9 +186,13 @@ class SceneRun:
         kinds = {s.kind for s in self.sections if s.begin <= stop.clock <= s.end}
         return stop.cause in (Cause.TRIGGER, Cause.LIMIT) and bool(kinds & {"home", "probe"})
 
-    def undisturbed(self, section: Section) -> int:
+    def undisturbed(self, section: Section, axis: int) -> int:
         """Clock up to which the moves of a section are certainly as planned."""
-        if section.end - section.begin == sum(plan.clocks for plan in section.plans):
+        if any(track.axis == axis for track in self.setup.tracks):
+            return section.begin
+        if axis not in self.setup.tracked and section.end - section.begin == sum(
+            plan.clocks for plan in section.plans
+        ):
             return section.end
         clocks = [happened.clock for happened in self.events if happened.clock is not None]
         return min((clock for clock in clocks if section.begin < clock <= section.end), default=section.begin)
@@ -163,6 +209,7 @@ class SceneRun:
                 found.append(f"axis {axis} is at {self.core_positions[axis]}, but its pin made {net} steps")
             if self.machine[axis] != net + self.setup.start(axis):
                 found.append(f"axis {axis} of the simulated machine is at {self.machine[axis]}")
+        found += self._tracked()
         for section in self.sections:
             number = section.numbers[0]
             if section.outcome == "OK":
@@ -171,13 +218,31 @@ class SceneRun:
                 found.append(f"move {number}: {section.outcome}")
         for happened in self.events:
             if happened.clock is None:
-                found.append(f"event {happened.number}: it never occurred")
+                found.append(f"{happened.name}: it never occurred")
+        return found
+
+    def _tracked(self) -> list[str]:
+        """What the trackers have not made, unless a stop ended them."""
+        found = []
+        for tracker in [] if self.stops or self.unmade else self.trackers:
+            axis = tracker.axis
+            if tracker.enabled and not tracker.at_target:
+                found.append(f"axis {axis}: its tracker is at {tracker.position}, not at {tracker.target}")
+            moves = [move for section in self.sections for move in section.moves]
+            path = sum(move.steps[axis] for move in moves)
+            if not any(isinstance(move, MoveHome | MoveProbe) for move in moves) and (
+                self.core_positions[axis] != path + tracker.position
+            ):
+                found.append(
+                    f"axis {axis} is at {self.core_positions[axis]}, not at the {path} of its path "
+                    f"and the {tracker.position} of its tracker"
+                )
         return found
 
     def _short(self, section: Section) -> list[str]:
         """Axes that did not make the steps of a section that was not stopped."""
         found = []
-        for axis in range(self.file.axes if section.kind in ("moves", "thread") else 0):
+        for axis in self.plain_axes if section.kind in ("moves", "thread") else []:
             clocks, directions = self.steps(axis)
             own = (clocks >= section.begin - self.start) & (clocks <= section.end - self.start)
             made, wanted = int(directions[own].sum()), sum(move.steps[axis] for move in section.moves)

@@ -15,13 +15,17 @@ from passo.move_forms import (
     EventResume,
     EventSlip,
     EventStop,
+    EventUntrack,
     MachineCompare,
     MachineEncoder,
     MachineInput,
     MachineOutput,
     MachineSettings,
     MachineSpindle,
+    MachineTrack,
 )
+
+AXES_OF_CORES = (3, 4, 8)  # few, as each has to be built
 
 Event = (
     EventInput
@@ -33,6 +37,8 @@ Event = (
     | EventAbort
     | EventArm
     | EventSlip
+    | EventUntrack
+    | MachineTrack
 )
 EVENT_TYPES: dict[str, type[Event]] = {event.form.name: event for event in get_args(Event)}
 
@@ -45,17 +51,30 @@ class Setup:
     axes: int  # of the moves
     inputs: tuple[MachineInput, ...] = ()
     encoders: tuple[MachineEncoder, ...] = ()
-    events: tuple[Event, ...] = ()
+    events: tuple[Event, ...] = ()  # also targets of trackers that come at a moment
     scales: tuple[Fraction, ...] = ()
     outputs: tuple[MachineOutput | None, ...] = ()  # of each move of the file
     compare: MachineCompare | None = None
     spindle: MachineSpindle | None = None
+    tracks: tuple[MachineTrack, ...] = ()  # those that hold from the beginning, one per axis at most
+    names: tuple[str, ...] = ()  # of the events: "event 1", "track 1"
+    trackers: tuple[MachineTrack, ...] = ()  # limits of the trackers that are used, one per axis
 
     def find(self, role: str, axis: int) -> int | None:
         """Number of an input; the channel has one probe."""
         places = [(one.role, 0 if one.role == "probe" else one.axis) for one in self.inputs]
         wanted = (role, 0 if role == "probe" else axis)
         return places.index(wanted) if wanted in places else None
+
+    @property
+    def core_axes(self) -> int:
+        """Axes of the core that runs the file: those of the moves, and one for the spindle."""
+        return next(n for n in AXES_OF_CORES if n >= self.axes + bool(self.spindle))
+
+    @property
+    def tracked(self) -> list[int]:
+        """Axes whose trackers are used."""
+        return [one.axis for one in self.trackers]
 
     @property
     def spindle_axis(self) -> int:

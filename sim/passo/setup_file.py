@@ -13,6 +13,7 @@ from passo.move_forms import (
     EventArm,
     EventInput,
     EventSlip,
+    EventUntrack,
     MachineEncoder,
     MachineInput,
     MoveHome,
@@ -31,6 +32,7 @@ from passo.setup_outputs import (
     read_spindle,
     settings_of,
 )
+from passo.setup_tracks import read_tracks
 from passo.table_values import Table, within
 from passo.values import BadValueError, meant, shown
 
@@ -44,11 +46,11 @@ def read_setup(data: Table, moves: Sequence[Any], clock_hz: int) -> Setup | None
     """The setup of a file that has one; raises BadValueError."""
     tasks = [move for move in moves if isinstance(move, MoveHome | MoveProbe | MoveThread)]
     has_outputs = any(OUTPUT in table for table in data["move"])
-    if "machine" not in data and "event" not in data and not tasks and not has_outputs:
+    if not any(key in data for key in ("machine", "event", "track")) and not tasks and not has_outputs:
         return None
     if any(move.channel for move in moves):
         raise BadValueError(
-            "[machine], [[event]], output, home, probe and thread are for files of channel 0 only"
+            "[machine], [[event]], [[track]], output, home, probe and thread are for files of channel 0 only"
         )
     axes = len(moves[0].steps)
     setup = within("machine", lambda: _machine(data.get("machine", {}), axes, clock_hz))
@@ -56,12 +58,31 @@ def read_setup(data: Table, moves: Sequence[Any], clock_hz: int) -> Setup | None
     for number, table in enumerate(_tables(data, "event"), 1):
         event = within(f"event {number}", lambda table=table: _event(table, setup, axes, clock_hz))
         events.append(event)
-    _check_count("events", len(events), most("event"))
+    tracks = read_tracks(
+        _tables(data, "track"),
+        setup,
+        clock_hz,
+        lambda table, track: _check_when(table, track, setup, axes),
+        lambda key, place, axis: _steps(key, place, axis, setup.scales),
+    )
+    for number, event in enumerate(events, 1):
+        if isinstance(event, EventUntrack) and all(one.axis != event.axis for one in tracks.limits):
+            raise BadValueError(f"event {number}: axis {event.axis} has no target: [[track]]")
+    names = (*(f"event {number}" for number in range(1, len(events) + 1)), *tracks.names)
+    several = "events and targets of trackers" if tracks.later else "events"
+    _check_count(several, len(names), most("event"))
     outputs = []
     for number, (table, move) in enumerate(zip(data["move"], moves, strict=True), 1):
         made = within(f"move {number}", lambda table=table, move=move: read_output(table, move, clock_hz))
         outputs.append(made)
-    setup = replace(setup, events=tuple(events), outputs=tuple(outputs))
+    setup = replace(
+        setup,
+        events=(*events, *tracks.later),
+        outputs=tuple(outputs),
+        tracks=tracks.first,
+        trackers=tracks.limits,
+        names=names,
+    )
     if setup.has_outputs:
         check_pwm(setup.settings, clock_hz)
     for number, move in enumerate(moves, 1):
@@ -168,7 +189,7 @@ def _event(table: Table, setup: Setup, axes: int, clock_hz: int) -> Event:
         raise BadValueError(f"do must be one of {', '.join(names)}, not {shown(do)}{meant(do, names)}")
     event = EVENT_TYPES[do](**read_form(EVENTS[do], table, clock_hz, ("do",)))
     _check_when(table, event, setup, axes)
-    if isinstance(event, EventInput | EventArm | EventSlip):
+    if isinstance(event, EventInput | EventArm | EventSlip | EventUntrack):
         _check_axis("axis", event.axis, axes)
     if isinstance(event, EventInput):
         _check_fitted(event.input, event.axis, setup)

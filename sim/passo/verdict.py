@@ -43,8 +43,9 @@ def scene_verdict(run: SceneRun, engine: str) -> Verdict:
     asked, made = sum(run.asked(section) for section in moved), sum(run.made(section) for section in moved)
     if stopped:
         said.append(f"stopped by {stopped} in {_moves(run.sections[-1].numbers)}")
-    if moved:
+    if moved and run.plain_axes:
         said.append(f"{made:,} of {asked:,} steps made")
+    said += [f"tracker of axis {one.axis} at {one.position}" for one in run.trackers]
     if tasks := [
         section.kind for section in run.sections if section not in moved and section.outcome == "OK"
     ]:

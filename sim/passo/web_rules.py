@@ -5,7 +5,7 @@ from itertools import chain, combinations
 from typing import Any
 
 from passo_fpga.boards import Board, boards
-from passo_fpga.parts import PORTS
+from passo_fpga.parts import WITH_PINS
 from passo_fpga.pll import PllError, possible
 from passo_fpga.table import BoardError
 
@@ -65,6 +65,7 @@ def rules() -> dict[str, Any]:
         "motors_most": own.MOTORS_MOST,
         "motors": MOTORS_MOST,
         "limits": LIMITS,
+        "backlash": own.BACKLASH_KEYS,
         "following_counts": own.FOLLOWING_COUNTS,
         "count_clocks": own.COUNT_CLOCKS,
         "ratio_one": own.RATIO_ONE,
@@ -78,7 +79,7 @@ def rules() -> dict[str, Any]:
         "pin_default": str(PIN_SECONDS),
         "cores": AXES_OF_CORES,
         "defaults": defaults,
-        "parts": tuple(PORTS),
+        "parts": WITH_PINS,
         "drives": {name: drive.pins for name, drive in drives().items()},
         "boards": {name: _board(board) for name, board in boards().items()},
         "gcode": _gcode(),
@@ -109,7 +110,7 @@ def _gcode() -> dict[str, Any]:
 
 def _board(board: Board) -> dict[str, Any]:
     """Its clocks without parts and with them, those that its PLL makes, and which cores it refuses."""
-    kinds = chain.from_iterable(combinations(PORTS, count) for count in range(len(PORTS) + 1))
+    kinds = chain.from_iterable(combinations(WITH_PINS, count) for count in range(len(WITH_PINS) + 1))
     refused = {}
     for parts in kinds:
         for axes in range(1, len(AXIS_LETTERS) + 2):  # with that of a spindle
@@ -121,7 +122,7 @@ def _board(board: Board) -> dict[str, Any]:
                 refused[f"{axes} {','.join(parts)}"] = str(error)
     made = (round(pll.mhz * 1e6) for pll in possible(board.device.family, board.oscillator_mhz))
     return {
-        "hz": [round(board.pll(None, parts).mhz * 1e6) for parts in ((), tuple(PORTS))],
+        "hz": [round(board.pll(None, parts).mhz * 1e6) for parts in ((), WITH_PINS)],
         "clocks": list(dict.fromkeys(made)),
         "oscillator_mhz": board.oscillator_mhz,
         "refused": refused,

@@ -105,4 +105,20 @@ enum passo_error passo_read_tracker(struct passo *passo, uint8_t axis, struct pa
 	return PASSO_OK;
 }
 
+int32_t passo_track_at(const struct passo_track_table *table, int32_t position)
+{
+	const int16_t *targets = table->targets;
+	const int64_t way = (int64_t)position - table->begin, pitch = table->pitch;
+
+	if (table->points == 0u || way <= 0 || pitch == 0)
+		return table->points ? targets[0] : 0;
+	const int64_t point = way / pitch;
+	if (point >= (int64_t)table->points - 1)
+		return targets[table->points - 1u];
+	const int64_t change = (int64_t)targets[point + 1] - targets[point];
+	const int64_t twice = 2 * change * (way % pitch) + pitch; /* in halves of `pitch`, and one more */
+	const int64_t rounded = twice >= 0 ? twice / (2 * pitch) : -((2 * pitch - 1 - twice) / (2 * pitch));
+	return targets[point] + (int32_t)rounded;
+}
+
 #endif

@@ -39,6 +39,17 @@ struct passo_track_reading {
 /* Two frames. */
 enum passo_error passo_read_tracker(struct passo *passo, uint8_t axis, struct passo_track_reading *reading);
 
+/* Targets along an axis, as of a leadscrew whose errors are known. */
+struct passo_track_table {
+	const int16_t *targets; /* steps, at points that are `pitch` steps apart */
+	uint16_t points;
+	int32_t begin;  /* position of the first one */
+	uint32_t pitch; /* steps, above 0 */
+};
+/* The target where the path is at `position`: on the straight line between two points, to the nearest step,
+ * halves up; before the first and behind the last point that of the point; without points 0. No frame. */
+int32_t passo_track_at(const struct passo_track_table *table, int32_t position);
+
 #ifdef __cplusplus
 }
 #endif

@@ -75,7 +75,7 @@ class Board:
                 yield f"axes[{axis}].{port}", f"{port}[{axis}]" if axes > 1 else port, pin
         core_parts.check(self.name, self.parts, parts, axes)
         for part in parts:
-            for port, of_bits in self.parts[part].items():
+            for port, of_bits in self.parts.get(part, {}).items():
                 count = min(core_parts.bits(part, port, axes), len(of_bits))
                 for bit, pin in enumerate(of_bits[:count]):
                     name = f"{port}[{bit}]"
@@ -168,7 +168,7 @@ def board(name: str) -> Board:
         if levels.has(port):
             reset[port] = levels.levels(port, len(axis_pins))
     levels.end()
-    tables = {part: table.table(part) for part in core_parts.PORTS if table.has(part)}
+    tables = {part: table.table(part) for part in core_parts.WITH_PINS if table.has(part)}
     shared = "inputs" in tables and tables["inputs"].flag(core_parts.SHARED)
     parts = {
         part: core_parts.read(of_part, part, len(axis_pins), lambda at, key: _pin(at, key, family))

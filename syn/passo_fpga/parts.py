@@ -11,8 +11,9 @@ from passo_fpga.table import BoardError, Table
 
 PORTS = {  # width of each port, by part
     part: {pin.name: pin.width for pin in (*INPUTS, *OUTPUTS) if pin.parameter == part}
-    for part in ("inputs", "encoders", "outputs")
+    for part in ("inputs", "encoders", "outputs", "trackers")
 }
+WITH_PINS = tuple(part for part in PORTS if PORTS[part])  # those that have a table in a board.toml
 OF_A_CHANNEL = {"CHANNELS": 1, "CHANNELS*8": 8, "1": 1}  # widths that do not depend on the axes
 LIMITS = ("limit_low", "limit_high")
 SHARED = "shared"  # key of [inputs]: the pins of `home` may be those of limits
@@ -55,6 +56,8 @@ def read(table: Table, part: str, axes: int, pin: Callable[[Table, str], P]) -> 
 def check(board: str, there: Mapping[str, PartPins[Any]], parts: Sequence[str], axes: int) -> None:
     """Raise BoardError for a part that a board has no pins for, or too few for this number of axes."""
     for part in parts:
+        if part not in WITH_PINS:
+            continue
         if part not in there:
             known = f"it has pins for {', '.join(there)}" if there else "it has none for any part"
             raise BoardError(f"board '{board}': the table has no pins for part '{part}'; {known}")

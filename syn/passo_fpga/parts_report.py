@@ -19,7 +19,7 @@ from passo_fpga.design import Design
 from passo_fpga.devices import DEVICES, SPI_MHZ, Device
 from passo_fpga.flow import cells, place, synthesize
 from passo_fpga.pages import markdown, mhz, write_block
-from passo_fpga.parts import PORTS
+from passo_fpga.parts import WITH_PINS
 from passo_fpga.tools import prepare, workers
 
 REPORT = paths.build / "report-parts.json"
@@ -42,14 +42,14 @@ def measure(names: Sequence[str]) -> dict[str, Any]:
     devices = [DEVICES[name] for name in names]
     prepare(dict.fromkeys(program for device in devices for program in device.family.programs), tell)
     wanted = [
-        design(device, axes, part) for device in devices for axes in (FEW, MANY) for part in ("", *PORTS)
+        design(device, axes, part) for device in devices for axes in (FEW, MANY) for part in ("", *WITH_PINS)
     ]
     with ThreadPoolExecutor(workers()) as pool:
         estimate = Estimate(len(wanted))
         for count, made in enumerate(pool.map(_synthesized, wanted), 1):
             tell(f"synthesis {estimate.counted(count)}: {made.name}")
         clocks = _clocks(pool, tell) if CLOCK_DEVICE in names else []
-    sizes = [row(device, part) for device in devices for part in PORTS]
+    sizes = [row(device, part) for device in devices for part in WITH_PINS]
     return {"axes": [FEW, MANY], "seeds": list(SEEDS), "sizes": sizes, "clocks": clocks}
 
 
@@ -74,7 +74,7 @@ def _more(device: Device, axes: int, part: str) -> dict[str, int]:
 def _clocks(pool: ThreadPoolExecutor, tell: Any) -> list[dict[str, Any]]:
     device = DEVICES[CLOCK_DEVICE]
     target, rows = device.target_mhz, []
-    for part in PORTS:
+    for part in WITH_PINS:
         made = design(device, MANY, part)
         run = partial(place, made, mhz=target, clock_ports={"clk": target, "spi_sclk": SPI_MHZ})
         reached = []
@@ -115,7 +115,7 @@ def _sizes(rows: Sequence[dict[str, Any]]) -> tuple[str, Sequence[str], list[lis
             DEVICES[row["device"]].title,
             *(f"{row['once'][column]:,.0f} + {row['per_axis'][column]:,.0f}" for column in COLUMNS),
         ]
-        for row in sorted(rows, key=lambda row: list(PORTS).index(row["part"]))
+        for row in sorted(rows, key=lambda row: WITH_PINS.index(row["part"]))
     ]
     return "cost of the parts", header, cells_of
 

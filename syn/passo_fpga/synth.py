@@ -62,6 +62,8 @@ def _list() -> None:
     for each in boards().values():
         if each.parts:
             print(f"{each.name} has pins for PARTS={','.join(each.parts)}")
+    pinless = ",".join(part for part in parts.PORTS if part not in parts.WITH_PINS)
+    print(f"every board, without pins: PARTS={pinless}")
 
 
 @dataclass(frozen=True)

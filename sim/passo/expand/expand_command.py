@@ -40,7 +40,7 @@ def run_height_map(asked: argparse.Namespace) -> None:
 
 
 def _options(asked: argparse.Namespace) -> Options:
-    gcode = read_machine(asked.machine).gcode if asked.machine else Options().gcode
+    gcode = read_machine(asked.machine, takes_up=True).gcode if asked.machine else Options().gcode
     return Options(replace(gcode, levels=asked.inputs), read_tools(asked.tools), asked.at_zero)
 
 

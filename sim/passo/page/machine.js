@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A machine at the pins: its signals, the power, and what encoders have measured.
+// A machine at the pins: its signals, the power, what encoders have measured and trackers have made.
 "use strict";
 
 class Rig {
@@ -13,15 +13,19 @@ class Rig {
             this.power.values = Float64Array.from(this.power.percent);
             this.power.extremes = new Extremes(this.power.values);
         }
-        for (const encoder of this.encoders) {
-            for (const name of ["measured", "error"]) {
-                encoder[name] = Float64Array.from(encoder[name]);
-                encoder[`${name}Extremes`] = new Extremes(encoder[name]);
+        const sampled = [[this.encoders, ["measured", "error"]], [this.trackers, ["tracked"]]];
+        for (const [all, names] of sampled) {
+            for (const own of all) {
+                for (const name of names) {
+                    own[name] = Float64Array.from(own[name]);
+                    own[`${name}Extremes`] = new Extremes(own[name]);
+                }
             }
         }
     }
 
-    encoder(axis) { return this.encoders.find(one => one.axis === axis.axis); }
+    // The encoder or the tracker of an axis, which has samples with that name.
+    sampled(axis, name) { return [...this.encoders, ...this.trackers].find(one => one.axis === axis.axis && one[name]); }
     level(n, clock) { return this.signals[n].count(clock) % 2 === 1; }
 }
 
@@ -47,9 +51,9 @@ function addSignals(parent, view, machine) {
     });
 }
 
-// A chart of values at the samples of each axis that has an encoder.
+// A chart of values at the samples of each axis that has them.
 function addSamples(parent, view, machine, { id, title, name, unit, per, limit }) {
-    const of = axis => machine.encoder(axis);
+    const of = axis => machine.sampled(axis, name);
     new TimeChart(parent, view, {
         id, title, unit, height: 150, exact: "every sample of the host drawn",
         decimated: most => `up to ${grouped(most)} samples per pixel, drawn as their range`,
@@ -108,6 +112,11 @@ function addMachine(parent, view) {
                 const n = lower(clocks, clock + 1e-9);
                 return axis === view.axes[0][0] && n ? `${plain(values[n - 1])} %` : "";
             },
+        });
+    }
+    if (machine.trackers.length) {
+        addSamples(parent, view, machine, {
+            id: "trackers", title: "Trackers: their share of the position", name: "tracked", unit: facts.runs[0].unit, per: axis => axis.per_step,
         });
     }
     if (!machine.encoders.length) return;
