@@ -128,7 +128,7 @@ whole-machine: ## Simulate examples/machines/motors.toml as a whole, from the se
 	@PASSO_WHOLE=1 $(BIN)/pytest tests/test_whole_machine.py -k four_motors
 
 release: ## Build build/release/: archive of the commit with the example machines, bill of materials, test results (half an hour).
-	@tools/setup.sh fpga firmware release
+	@tools/setup.sh dev formal fpga firmware hdl path release site web # what sbom.json names
 	@$(BIN)/python -m tools.make_release
 
 synth: ## Build the bitstream of a board: BOARD=..., optional AXES=, CLOCK= (MHz), PARTS=inputs,encoders,outputs,trackers; without BOARD: list the boards.

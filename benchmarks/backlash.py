@@ -9,13 +9,14 @@ follows a motor as far as the play lets it. The distance to the center counts af
 
 import argparse
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from passo import registers as r
 from passo.build import Parameters
-from passo.console import console, table
+from passo.console import cancelable, console, progress, table
 from passo.engine import model_engine
 from passo.host import Channel, PinTiming
 from passo.link import Link
@@ -67,8 +68,8 @@ def follow(motor: np.ndarray, start: int) -> np.ndarray:
     return places
 
 
-def machine(trackers: bool) -> Result:
-    """Make the circle."""
+def machine(trackers: bool, report: Callable[[float], None] = lambda lines: None) -> Result:
+    """Make the circle; `report` is called with the lines sent."""
     parameters = Parameters(axes=2, trackers=int(trackers), line_queue_log2=8)
     with model_engine(parameters, CLOCK_HZ) as engine:
         link = Link(engine)
@@ -101,6 +102,7 @@ def machine(trackers: bool) -> Result:
             if room:
                 channel.push_line_words(lines[sent : sent + room])
                 sent += room
+                report(sent)
         end = channel.positions()
         events.append(engine.drain())
     return judge(np.concatenate(events), end)
@@ -144,11 +146,17 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--picture", type=Path, help="draw it into this file")
     arguments = parser.parse_args()
-    results = {"without trackers": machine(False), "backlash by trackers": machine(True)}
+    results = {}
+    with cancelable() as work:
+        for name, trackers in {"without trackers": False, "backlash by trackers": True}.items():
+            with progress(name, len(chords())) as report:
+                results[name] = machine(trackers, report)
     made = table("Circle on screws with play", "", "roundness, µm", "path, s")
     for name, result in results.items():
         made.add_row(name, f"{1000 * result.roundness:.1f}", f"{result.seconds:.4f}")
     console.print(made)
+    if work.canceled:
+        raise SystemExit("canceled")
     plain, taken = results.values()
     rounder, longer = plain.roundness / taken.roundness, taken.seconds / plain.seconds
     console.print(f"{rounder:.1f} times as round, {longer:.4f} of the time")

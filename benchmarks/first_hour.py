@@ -153,13 +153,20 @@ def written(figures: list[Figure], keep: bool = False) -> str:
     """The page with these figures; `keep`: beside its rows of others."""
     page = PAGE.read_text(encoding="utf-8")
     rows = [figure.row for figure in figures]
-    if keep:
-        new, what = {row[0]: row for row in rows}, [row[0] for row in rows]
-        there = [tuple(line.strip("| ").split(" | ")) for line in page.splitlines() if line.startswith("| ")]
-        old = [row for row in there[2:] if row[0] not in new]
-        # those of a command stay together
-        at = next((at for at, row in enumerate(old) if row[-1] == rows[0][-1]), len(old))
-        rows = [*old[:at], *(new[one] for one in what), *old[at:]]
+    if keep:  # each in its place, a new one behind the one before it
+        there = [tuple(line.strip("| ").split(" | ")) for line in page.splitlines() if line.startswith("| ")][
+            2:
+        ]
+        places, at = {row[0]: place for place, row in enumerate(there)}, len(there)
+        behind: dict[int, list[tuple[str, ...]]] = {}
+        for row in rows:
+            at = places.get(row[0], at)
+            if row[0] in places:
+                there[at] = row
+            else:
+                behind.setdefault(at, []).append(row)
+        kept = [[row, *behind.pop(place, [])] for place, row in enumerate(there)]
+        rows = [row for some in (*kept, *behind.values()) for row in some]
     text = "".join(f"| {' | '.join(row)} |\n" for row in (COLUMNS, ("---",) * len(COLUMNS), *rows))
     return TABLE.sub(lambda found: found[1] + text + found[2], page)
 

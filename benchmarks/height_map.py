@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+from passo.console import cancelable, each
 from passo.expand.expander import Options, expand_file
 from passo.expand.follow import follow
 from passo.expand.height_map import ERROR, HeightMap
@@ -92,13 +93,13 @@ def cut(folder: Path, name: str, step: float = 10) -> Cut:
 def main() -> int:
     """Cut all plates and print."""
     good = True
-    with tempfile.TemporaryDirectory() as folder:
-        for name, (_, bound) in PLATES.items():
+    with tempfile.TemporaryDirectory() as folder, cancelable() as work:
+        for name, (_, bound) in each("plates", PLATES.items()):
             made = cut(Path(folder), name)
             good = good and made.worst < bound
             of = f"{made.points:,} points, {made.lines} lines of {len(PROGRAM.splitlines())}"
             print(f"{name}: depth of cut within {made.worst:.4f} mm (bound {bound:g}), {of}")
-    return not good
+    return work.canceled or not good
 
 
 if __name__ == "__main__":

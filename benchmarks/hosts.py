@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 from passo.build import Parameters
+from passo.console import stages
 from passo.driver import Driver
 from passo.engine import AroundEngine, Engine, model_engine, moves_of
 from passo.native import ffi
@@ -236,7 +237,10 @@ def measure(seed: int, seconds: float = 20, deaths: int = DEATHS, hour: float = 
 def main() -> int:
     """Print the figures; 1 if one of them is not as promised."""
     seed = int(sys.argv[1]) if len(sys.argv) > 1 else 1
+    tell = stages()
+    tell("hosts: all figures")
     found = measure(seed)
+    tell.end()
     same_edges = {True: "the same edges", False: "OTHER EDGES"}
     for line in (
         f"axes off at the time of a point: {found.off} steps; the end late: {found.late} clocks",

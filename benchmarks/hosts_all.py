@@ -17,6 +17,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from passo.console import cancelable, stages
 from passo.output import write_text
 from passo.toolchain import paths, short
 
@@ -238,8 +239,14 @@ def main() -> int:
     parser.add_argument("--only", nargs="+", choices=PARTS, default=list(PARTS))
     parser.add_argument("--page", action="store_true", help="only write the page")
     given = parser.parse_args()
-    for part in [] if given.page else given.only:
-        run(part, Options(given.seed, given.hours, given.lines))
+    tell = stages()
+    with cancelable() as work:
+        for part in [] if given.page else given.only:
+            tell(f"hosts: {part}")
+            run(part, Options(given.seed, given.hours, given.lines))
+        tell.end()
+    if work.canceled:
+        return 1  # what is finished stands in build/hosts/
     write_text(PAGE, page())
     print(f"written: {short(PAGE)}")
     return int(not all(row.kept for _, _, rows in results().values() for row in rows))

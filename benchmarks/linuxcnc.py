@@ -10,6 +10,7 @@ import sys
 from dataclasses import dataclass, field
 
 import numpy as np
+from passo.console import stages
 from passo.engine import moves_of
 
 from benchmarks.servo import CLOCK_HZ, LATE, PERIOD, passes
@@ -251,10 +252,13 @@ def figure(found: Figures) -> str:
 def main() -> int:
     """Print the figures; 1 if one of them is not as promised."""
     kept = True
+    tell = stages()
     for program in programs().values():
+        tell(f"LinuxCNC: {program.name}")
         found = measure(program)
         print(f"{program.name}: {figure(found)}; lag {found.lag}", flush=True)
         kept = kept and found.is_good
+    tell.end()
     return int(not kept)
 
 

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from passo.console import progress
 from passo.engine import NUMBERS
 from passo.machine_file import read_machine
 from passo.part import Played, core_of, play_part, read_part
@@ -81,7 +82,7 @@ def turned(changes: np.ndarray, bit: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def judge(played: Played, axis: int = 2) -> list[Pass]:
-    """All passes, of which each begins and ends at the same position of the axis."""
+    """All passes, each from one position of the axis back to it; one that was canceled is left out."""
     assert played.machine.spindle
     counts = played.machine.spindle.counts
     clocks, positions = played.clocks[axis], played.positions[axis]
@@ -91,6 +92,8 @@ def judge(played: Played, axis: int = 2) -> list[Pass]:
     top, found = 2 * STEPS_PER_MM, []
     starts = np.flatnonzero((positions[:-1] == top) & (np.diff(positions) < 0)) + 1
     for first, after in zip(starts, [*starts[1:], len(positions)], strict=True):
+        if positions[first:after].max() < top:
+            break
         last = first + int(np.argmax(positions[first:after] >= top))
         way = (top - middle[first : last + 1]) / STEPS_PER_MM / PITCH * counts
         in_work = way > APPROACH / PITCH * counts
@@ -117,7 +120,10 @@ def judge(played: Played, axis: int = 2) -> list[Pass]:
 
 
 def play(text: str, engine: str = "model", more: str = "", head: str = MACHINE) -> Played:
-    """A program on the machine of this page, or one that begins with `head`; `more`: lines of its axis Z."""
+    """A program on the machine of this page, or one that begins with `head`; `more`: lines of its axis Z.
+
+    Ctrl-C ends it with what is played.
+    """
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         axes = "".join(AXIS.format(letter, STEPS_PER_MM if letter == "Z" else 80) for letter in "XYZ")
@@ -125,8 +131,11 @@ def play(text: str, engine: str = "model", more: str = "", head: str = MACHINE) 
         (folder / "part.nc").write_text(text)
         machine = read_machine(folder / "machine.toml")
         part = read_part(folder / "part.nc", machine)
-        with open_engine(engine, core_of(machine), machine.clock_hz) as core:
-            return play_part(part, machine, core)
+        with (
+            open_engine(engine, core_of(machine), machine.clock_hz) as core,
+            progress("tapping", part.chords) as report,
+        ):
+            return play_part(part, machine, core, report)
 
 
 def main() -> int:
@@ -146,6 +155,8 @@ def main() -> int:
     for number, one in enumerate(passes, 1):
         figures = f"{one.deepest:11.4f}  {one.error:13.3f}  {one.back:13.3f}  {one.phase:13.3f}"
         print(f"{number:4}  {figures}  {one.end:10}  {one.off:9.1f}  {one.settled:11.3f}")
+    if played.canceled:
+        return 1
     spread = max(one.phase for one in passes) - min(one.phase for one in passes)
     error = max(one.error for one in passes)
     settled = max(one.settled for one in passes)

@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 from passo.build import Parameters
+from passo.console import stages
 from passo.driver import Driver, DriverError
 from passo.engine import Engine, model_engine, moves_of
 from passo.native import ffi, planner
@@ -580,7 +581,10 @@ def good(found: Figures) -> bool:
 
 def main() -> int:
     """Print the figures; 1 if one of them is not as promised."""
+    tell = stages()
+    tell("servo: all figures")
     found = measure(int(sys.argv[1]) if len(sys.argv) > 1 else 1)
+    tell.end()
     for line in (
         f"clocks {PPM} ppm apart, wakes late by up to 1 ms, bit errors of {ERRORS:g} ({found.flips} bits):",
         f"    every place within a step at most {found.late:.1f} periods after its command; lag {found.lag}",

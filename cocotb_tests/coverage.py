@@ -16,7 +16,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from passo.console import console, table
+from passo.console import console, stages, table
 from passo.toolchain import paths
 from rich.console import Console
 
@@ -154,7 +154,10 @@ def main() -> int:
     exclusions = read_exclusions()
     for path in data_files():
         path.unlink()
+    tell = stages()
+    tell("coverage: tests")
     status = run_tests()
+    tell("coverage: table")
     modules = read(data_files())
     if not modules:
         print("make coverage: the tests left no data", file=sys.stderr)

@@ -32,7 +32,7 @@ def check(code: str) -> subprocess.CompletedProcess[str]:
 def test_a_failed_check_names_the_first_file(tool: str) -> None:
     text, file = SAID[tool]
     done = check(f"print({text!r}); raise SystemExit(3)")
-    assert done.returncode == 3 and done.stdout == f"== name\n{text}\n"
+    assert done.returncode == 3 and done.stdout == f"[  0:00] lint: name\n{text}\n"
     assert done.stderr == f"name failed; look first at {file}; do this\n"
 
 

@@ -13,6 +13,7 @@ from passo.expand.block import shown
 from passo.expand.expander import Options, expand_file, needs_expanding
 from passo.expand.place import ExpandError
 from passo.expand.tools import Tool
+from passo.failure import BadInputError
 from passo.gcode import Gcode, GcodeError, GcodeSettings, lines
 from passo.machine_file import read_machine
 from passo.part import read_part
@@ -89,7 +90,10 @@ def test_the_result_of_m66(tmp_path: Path) -> None:
         assert expanded(tmp_path, f"{line}\nG0 X#5399", options) == [line, f"G0 X{value}"]
     assert expanded(tmp_path, "M66 P2\nG0 X#5399") == ["M66 P2", "G0 X0"]
     said = refusal(tmp_path, "M66 P2\nG0 X#5399", Options())
-    assert said == "2: word X: #5399 cannot be known while expanding: it is the result of M66 (--inputs)"
+    assert (
+        said
+        == "2: word X: #5399 cannot be known while expanding: it is the result of M66 (--inputs) (LinuxCNC)"
+    )
     command = ["expand", str(tmp_path / "part.ngc"), "--out", str(tmp_path / "plain.nc"), "--inputs"]
     assert main([*command, "0,2"]) == 0 and (tmp_path / "plain.nc").read_text().endswith("G0 X1\n")
     for wrong in ("9", "x", "-1"):
@@ -147,31 +151,34 @@ def test_fanuc_subroutines(tmp_path: Path) -> None:
 
 # What is written for {}: the folder; WORD: the text of error 20.
 REFUSED = {
-    "G0 X1\no1 while [1]\no1 endwhile": "2: endless? 2,000 lines were executed in loops and subroutines",
+    "G0 X1\no1 while [1]\no1 endwhile": "2: endless? 2,000 lines were executed in loops and "
+    "subroutines (LinuxCNC)",
     "o1 sub\no1 call\no1 endsub\no1 call": "2: subroutines are nested deeper than 9, as is an "
-    "endless recursion",
-    "o1 repeat [1e3]": "1: ']' is missing at the end of an expression, before 'e3]'",
-    "G0 X[1/0]": "1: word X: division by zero",
-    "G0 Xsqrt[-1]": "1: word X: SQRT[-1] has no value",
-    "G0 X[1": "1: word X: ']' is missing at the end of an expression, before ''",
-    "G0 X#<none>": "1: word X: #<none> was not set",
-    "G0 X#5602": "1: word X: there is no parameter #5602: 1 to 5601",
-    "G0 X#1.5": "1: word X: a parameter number must be an integer, not 1.5",
-    "#<_metric>=1": "1: #<_metric> is read-only",
-    "#5420=1": "1: #5420 is read-only",
-    "#5221=1": "1: #5221 cannot be set: write G10 L2, G28.1, G30.1 or G92",
-    "o1 endwhile": "1: O1 endwhile has no while",
-    "o1 if [1]\nG0 X1": "1: O1 if has no endif",
-    "o1 while [0]\no2 endwhile": "2: O2 endwhile has no while: O1 while is open",
-    "o1 if [0]\no1 endif\no1 if [0]\no1 endif": "3: O1 if: another construct has this label",
-    "o1 break": "1: O1 break is in no loop of this label",
-    "o1 call": "1: there is no subroutine 1, neither in this file nor as {}/1.ngc",
+    "endless recursion (LinuxCNC)",
+    "o1 repeat [1e3]": "1: ']' is missing at the end of an expression, before 'e3]' (NIST)",
+    "G0 X[1/0]": "1: word X: division by zero (NIST)",
+    "G0 Xsqrt[-1]": "1: word X: SQRT[-1] has no value (NIST)",
+    "G0 X[1": "1: word X: ']' is missing at the end of an expression, before '' (NIST)",
+    "G0 X#<none>": "1: word X: #<none> was not set: write #<none>=... before (LinuxCNC)",
+    "G0 X#5602": "1: word X: there is no parameter #5602: 1 to 5601 (LinuxCNC)",
+    "G0 X#1.5": "1: word X: a parameter number must be an integer, not 1.5 (NIST)",
+    "#<_metric>=1": "1: #<_metric> is read-only: use another name (LinuxCNC)",
+    "#5420=1": "1: #5420 is read-only: write G92 or G10 L20 (LinuxCNC)",
+    "#5221=1": "1: #5221 cannot be set: write G10 L2, G28.1, G30.1 or G92 (LinuxCNC)",
+    "o1 endwhile": "1: O1 endwhile has no while (LinuxCNC)",
+    "o1 if [1]\nG0 X1": "1: O1 if has no endif (LinuxCNC)",
+    "o1 while [0]\no2 endwhile": "2: O2 endwhile has no while: O1 while is open (LinuxCNC)",
+    "o1 if [0]\no1 endif\no1 if [0]\no1 endif": "3: O1 if: another construct has this label: write "
+    "another one (LinuxCNC)",
+    "o1 break": "1: O1 break is in no loop of this label (LinuxCNC)",
+    "o1 call": "1: there is no subroutine 1, neither in this file nor as {}/1.ngc (LinuxCNC)",
     "o1 begin": "1: O: 'begin' is none of elseif, else, endif, endwhile, endrepeat, endsub, sub, call, "
-    "return, if, while, do, repeat, break, continue",
-    "M99": "1: M99 of the main program repeats it without end: write M2 or M30",
+    "return, if, while, do, repeat, break, continue (LinuxCNC)",
+    "M99": "1: M99 of the main program repeats it without end: write M2 or M30 (Fanuc)",
     "G0 X#5063": "1: word X: #5063 cannot be known while expanding: "
-    "it is the result of a probe (passo run --surface)",
-    "G0 X#<_ini[a]b>": "1: word X: #<_ini[a]b> cannot be known while expanding: only the machine has it",
+    "it is the result of a probe (passo run --surface) (LinuxCNC)",
+    "G0 X#<_ini[a]b>": "1: word X: #<_ini[a]b> cannot be known while expanding: only the machine "
+    "has it (LinuxCNC)",
     "G0 X#1\nG5.1 X1 I1": "2: WORD: G5.1 (LinuxCNC): a spline: let the CAM program write G1, G2 and G3",
     "G0 X#1\nM104 S200": "2: WORD: M104 (RepRap): this is for 3D printers: leave it out",
     "G0 E#1": f"1: {GcodeError(36)}: E0 (RepRap: for 3D printers)",
@@ -185,19 +192,120 @@ def test_refusal(tmp_path: Path, text: str) -> None:
     assert refusal(tmp_path, text) == wanted
 
 
+# Each line that is refused, in one run; nothing of what only follows from it.
+ALL = {
+    # the lines behind are executed, but for what they have from a line that is refused
+    "G0 X[1/0]\n#1=[2\nG1 X#1 F100\nX5\nG0 Y#<none>\nG5.1 X1 I1\nG0 Z#5063\nM2\nG0 X[": [
+        *(
+            "1: word X: division by zero (NIST)",
+            "2: ']' is missing at the end of an expression, before '' (NIST)",
+        ),
+        "5: word Y: #<none> was not set: write #<none>=... before (LinuxCNC)",
+        "6: WORD: G5.1 (LinuxCNC): a spline: let the CAM program write G1, G2 and G3",
+        "7: word Z: #5063 cannot be known while expanding: it is the result of a probe (passo run --surface) "
+        "(LinuxCNC)",
+    ],
+    "G0 X#<a> #<b>=1\n#<a>=1\nG0 X#<a> Y#<b>\nG0 Z#<c>": [
+        "1: word X: #<a> was not set: write #<a>=... before (LinuxCNC)",
+        "4: word Z: #<c> was not set: write #<c>=... before (LinuxCNC)",
+    ],
+    # in loops once, in subroutines as well
+    "o1 sub\nG0 X[1/0]\no1 endsub\no2 repeat [9]\no1 call\n#3=[#3+1]\no2 endrepeat\no4 if [#3 eq 9]\nG0 Y-\n"
+    "o4 endif": [
+        "2: word X: division by zero (NIST)",
+        "9: word Y: a value is missing: write a number, #, [ or a function (NIST)",
+    ],
+    # a condition that is not known ends it: then the words are read
+    "G0 X[1/0]\n#1=[2/0]\no1 while [#1 lt 3]\n#1=[#1+1]\no1 endwhile\nG0 X]\nG0 Y#<none>\nM2\nG0 X[": [
+        *("1: word X: division by zero (NIST)", "2: division by zero (NIST)"),
+        "3: this depends on a line that is refused (LinuxCNC); of the lines behind it only the words "
+        "are checked",
+        "6: word X: a value is missing before ']': write a number, #, [ or a function (NIST)",
+    ],
+    "o1 if [1/0]\no1 endif\nG0 X": [
+        "1: division by zero (NIST); of the lines behind it only the words are checked",
+        "3: word X: a value is missing: write a number, #, [ or a function (NIST)",
+    ],
+    # O words
+    "o1 whle [1]\nG0 X[\no2 if [3\nG0 X1\no2 endif\no3 endsub\no4 sub\no5 break\nM2": [
+        "1: O: 'whle[1]' is none of elseif, else, endif, endwhile, endrepeat, endsub, sub, call, return, if, "
+        "while, do, repeat, break, continue (LinuxCNC)",
+        "3: ']' is missing at the end of an expression, before '' (NIST)",
+        *("6: O3 endsub has no sub (LinuxCNC)", "8: O5 break is in no loop of this label (LinuxCNC)"),
+        "7: O4 sub has no endsub (LinuxCNC)",
+        "2: word X: a value is missing: write a number, #, [ or a function (NIST)",
+    ],
+    "o<a> call\nG0 X#<_value> Y#<b>\nG0 Z[1/0]\nM98 P7\nG0 Z[1/0]": [
+        "1: there is no subroutine a, neither in this file nor as {}/a.ngc (LinuxCNC)",
+        *("3: word Z: division by zero (NIST)", "4: there is no subroutine O7 in this file (Fanuc)"),
+        "5: word Z: division by zero (NIST)",
+    ],
+    # contours
+    "G0 X0 Y0\nG41.1 D4\nX9\nY1\nX0\nG40\nX50 Y50\nG42.1 D4\nX59\nY51 Z[1/0]\nY49\nX50\nG40 X0": [
+        "4: the tool's radius of 2 mm would cut the contour: this line is too short for the inside corners "
+        "at its ends (NIST)",
+        "10: word Z: division by zero (NIST)",
+    ],
+}
+
+
+@pytest.mark.parametrize("text", ALL)
+def test_all_lines_that_are_refused(tmp_path: Path, text: str) -> None:
+    with pytest.raises(ExpandError) as caught:
+        expanded(tmp_path, text)
+    path = f"{tmp_path / 'part.ngc'}:"
+    wanted = [line.format(tmp_path).replace("WORD", str(GcodeError(20))) for line in ALL[text]]
+    assert [line.removeprefix(path) for line in str(caught.value).splitlines()] == wanted
+
+
+def test_many_lines_that_are_refused(tmp_path: Path) -> None:
+    """The first ones, and how many more."""
+    with pytest.raises(ExpandError) as caught:
+        expanded(tmp_path, "G0 X[1/0]\n" * 30)
+    *told, more = str(caught.value).splitlines()
+    assert (
+        len(told) == 20
+        and told[-1].startswith(f"{tmp_path / 'part.ngc'}:20:")
+        and more == "and 10 more lines"
+    )
+
+
+def test_a_loop_without_end_behind_a_line_that_is_refused(tmp_path: Path) -> None:
+    """It is left soon, and nothing is said of it: that line may be what would end it."""
+    with pytest.raises(ExpandError) as caught:
+        expanded(tmp_path, "G0 X[1/0]\no1 while [1]\no1 endwhile\nG0 Y]", Options(at_zero=True))
+    lines = [line.partition("part.ngc:")[2] for line in str(caught.value).splitlines()]
+    assert [line.split(":")[0] for line in lines] == ["1", "4"]
+
+
+def test_files_that_are_refused(tmp_path: Path) -> None:
+    """Of several all, with the lines that the interpreter refuses."""
+    one, two = tmp_path / "one.ngc", tmp_path / "two.nc"
+    one.write_text("#1=2\nG1 X[1/0] F600\nG38.2 Z-1 F9\nG0 Y#1\nM2\n")
+    two.write_text("G21 G90\nG0 X1\nM104\n")
+    with pytest.raises(BadInputError) as caught:
+        read_part([one, two], read_machine(MACHINE))
+    told = [line.removeprefix(f"{tmp_path}/").split(": ")[0] for line in str(caught.value).splitlines()]
+    assert told == ["one.ngc:2", "one.ngc:3", "two.nc:3"]
+
+
 UNKNOWN = {
-    "G0 Y#5420": "1: word Y: #5420 cannot be known: no absolute motion of X is before",
-    "G91 G0 X1\nG90 G0 Y#<_x>": "2: word Y: #<_x> cannot be known: no absolute motion of X is before",
-    "G0 X1\nG55\nG0 Y#5420": "3: word Y: #5420 cannot be known: no absolute motion of X is before",
-    "G0 X1\nG28 X2\nG0 Y#5420": "3: word Y: #5420 cannot be known: no absolute motion of X is before",
-    "G0 X1\nG53 G0 X0\nG0 Y#5420": "3: word Y: #5420 cannot be known: no absolute motion of X is before",
-    "G0 Y#5221": "1: word Y: #5221 cannot be known: no G10 L2 before has set this offset",
-    "G0 Y#5211": "1: word Y: #5211 cannot be known: no G92.1 is before, or no G92 at a known position",
-    "G0 Y#5161": "1: word Y: #5161 cannot be known while expanding: it is in machine coordinates",
-    "G0 Y#5400": "1: word Y: #5400 cannot be known: no M6 or M61 is before",
-    "G0 Y#5403": "1: word Y: #5403 cannot be known: no G43.1 or G49 is before",
+    "G0 Y#5420": "1: word Y: #5420 cannot be known: no absolute motion of X is before (LinuxCNC)",
+    "G91 G0 X1\nG90 G0 Y#<_x>": "2: word Y: #<_x> cannot be known: no absolute motion of X is "
+    "before (LinuxCNC)",
+    "G0 X1\nG55\nG0 Y#5420": "3: word Y: #5420 cannot be known: no absolute motion of X is before (LinuxCNC)",
+    "G0 X1\nG28 X2\nG0 Y#5420": "3: word Y: #5420 cannot be known: no absolute motion of X is "
+    "before (LinuxCNC)",
+    "G0 X1\nG53 G0 X0\nG0 Y#5420": "3: word Y: #5420 cannot be known: no absolute motion of X is "
+    "before (LinuxCNC)",
+    "G0 Y#5221": "1: word Y: #5221 cannot be known: no G10 L2 before has set this offset (LinuxCNC)",
+    "G0 Y#5211": "1: word Y: #5211 cannot be known: no G92.1 is before, or no G92 at a known "
+    "position (LinuxCNC)",
+    "G0 Y#5161": "1: word Y: #5161 cannot be known while expanding: it is in machine coordinates (LinuxCNC)",
+    "G0 Y#5400": "1: word Y: #5400 cannot be known: no M6 or M61 is before (LinuxCNC)",
+    "G0 Y#5403": "1: word Y: #5403 cannot be known: no G43.1 or G49 is before (LinuxCNC)",
     "G0 Y#<_feed_override>": "1: word Y: #<_feed_override> cannot be known while expanding: only the "
-    "machine has it",
+    "machine has it (LinuxCNC)",
 }
 
 
@@ -242,7 +350,7 @@ def test_run_expands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert "4 lines, 3 chords" in capsys.readouterr().out
     part.write_text("#1=0\n\nG1 X[1/#1] F600\n")
     assert main(["run", str(part), "--machine", str(MACHINE), "--out", str(tmp_path)]) == 2
-    assert capsys.readouterr().err == f"{part}:3: word X: division by zero\n"
+    assert capsys.readouterr().err == f"{part}:3: word X: division by zero (NIST)\n"
 
 
 def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -172,29 +172,35 @@ def test_flat_corner_before_a_narrow_arc(tmp_path: Path) -> None:
 
 
 REFUSED = {
-    "G0 X0 Y0\nG41 D9\n": "2: G41: no tool table has T9: --tools, or G41.1 D",
-    "G41\n": "1: G41: which tool? Write M6, D or G41.1 D",
-    "G41.1\n": "1: G41.1 needs the diameter of the tool: D",
-    "G19 G42 D3\n": "1: G42 is for the planes XY and ZX: write G17 or G18",
-    "G41.1 D1 L2\n": "1: G41.1: L: edges of lathe tools are not supported",
-    "G41 D3\nG0 X1 Y9\n": "2: X is not known at its beginning: move X before G41",
+    "G0 X0 Y0\nG41 D9\n": "2: G41: no tool table has T9: --tools, or G41.1 D (NIST, LinuxCNC)",
+    "G41\n": "1: G41: which tool? Write M6, D or G41.1 D (NIST, LinuxCNC)",
+    "G41.1\n": "1: G41.1 needs the diameter of the tool: D (NIST, LinuxCNC)",
+    "G19 G42 D3\n": "1: G42 is for the planes XY and ZX: write G17 or G18 (NIST, LinuxCNC)",
+    "G41.1 D1 L2\n": "1: G41.1: L: edges of lathe tools are not supported (NIST, LinuxCNC)",
+    "G41 D3\nG0 X1 Y9\n": "2: X is not known at its beginning: move X before G41 (NIST, LinuxCNC)",
     "G0 X0 Y0\nG41 D3\nX1\n": "3: the first motion after G41 or G42 is 1 mm and must be longer than the "
-    "tool's radius, 2 mm",
-    "G0 X0 Y0\nG41 D3\nX9\nG42 D3\n": "4: G42 cannot be used while G41 is in force: write G40 before",
-    "G0 X0 Y0\nG41 D3\nX9\nG28\n": "4: G28 cannot be used while G41 is in force: write G40 before",
-    "G0 X0 Y0\nG41 D3\nX9\nG18\n": "4: G18 cannot be used while G41 is in force: write G40 before",
-    "G0 X0 Y0\nG42 D3\nX9\nG92 X0\n": "4: G92 cannot be used while G42 is in force: write G40 before",
-    "G0 X0 Y0\nG42 D3\nX9\nY#5420\n": "4: word Y: #5420 cannot be read while G41 or G42 is in force",
+    "tool's radius, 2 mm (NIST)",
+    "G0 X0 Y0\nG41 D3\nX9\nG42 D3\n": "4: G42 cannot be used while G41 is in force: write G40 "
+    "before (NIST, LinuxCNC)",
+    "G0 X0 Y0\nG41 D3\nX9\nG28\n": "4: G28 cannot be used while G41 is in force: write G40 before "
+    "(NIST, LinuxCNC)",
+    "G0 X0 Y0\nG41 D3\nX9\nG18\n": "4: G18 cannot be used while G41 is in force: write G40 before "
+    "(NIST, LinuxCNC)",
+    "G0 X0 Y0\nG42 D3\nX9\nG92 X0\n": "4: G92 cannot be used while G42 is in force: write G40 "
+    "before (NIST, LinuxCNC)",
+    "G0 X0 Y0\nG42 D3\nX9\nY#5420\n": "4: word Y: #5420 cannot be read while G41 or G42 is in "
+    "force: write G40 before (LinuxCNC)",
     "G0 X0 Y0\nG41 D3\nX9\nY1\nX0\n": "4: the tool's radius of 2 mm would cut the contour: this line is too "
-    "short for the inside corners at its ends",
-    "G0 X0 Y0 F9\nG41 D3\nX9\nG3 X9 Y2 J1\n": "4: the tool's radius of 2 mm does not fit inside the arc's 1",
+    "short for the inside corners at its ends (NIST)",
+    "G0 X0 Y0 F9\nG41 D3\nX9\nG3 X9 Y2 J1\n": "4: the tool's radius of 2 mm does not fit inside the "
+    "arc's 1 (NIST)",
     "G0 X0 Y0 F9\nG41 D3\nX9\nG3 X3 I-3\n": "4: the tool's radius of 2 mm does not fit into this inside "
-    "corner",
-    "G0 X0 Y0 F9\nG41 D3\nX9\nG40\nG2 X10 I.5\n": f"5: {FIRST_AFTER}",
-    "G0 X0 Y0 F9\nG41 D3\nX9\nG40\nG92 X0\n": f"5: {FIRST_AFTER}",
-    "G0 X0 Y0 Z3 F9\nG41 D3\nX9\nG40\nG81 X0 Z0 R1\n": f"5: {FIRST_AFTER}",
+    "corner (NIST)",
+    "G0 X0 Y0 F9\nG41 D3\nX9\nG40\nG2 X10 I.5\n": f"5: {FIRST_AFTER} (NIST, LinuxCNC)",
+    "G0 X0 Y0 F9\nG41 D3\nX9\nG40\nG92 X0\n": f"5: {FIRST_AFTER} (NIST, LinuxCNC)",
+    "G0 X0 Y0 Z3 F9\nG41 D3\nX9\nG40\nG81 X0 Z0 R1\n": f"5: {FIRST_AFTER} (NIST, LinuxCNC)",
     "G0 X0 Y0 Z3 F9\nG41 D3\nX9\nG81 X0 Z0 R1\n": "4: G81 cannot be used while G41 is in force: "
-    "write G40 before",
+    "write G40 before (NIST, LinuxCNC)",
 }
 
 
@@ -204,6 +210,12 @@ def test_refusal(tmp_path: Path, text: str) -> None:
     with pytest.raises(ExpandError) as caught:
         plain(tmp_path, text, Options(tools=TOOLS))
     assert f"{caught.value.place.line}: {caught.value.reason}" == REFUSED[text]
+
+
+def test_a_tool_without_a_radius(tmp_path: Path) -> None:
+    """It is where the program says, also in the line that turns compensation on."""
+    text = "G0 X0 Y0 Z1 F9\nG42 D0 G1 X5 Y1 Z0\nX6\nG40 X7\n"
+    assert plain(tmp_path, text) == ["G0 X0 Y0 Z1 F9", "G1 X5 Y1 Z0", "X6", "G40 X7"]
 
 
 def test_home_after_compensation(tmp_path: Path) -> None:

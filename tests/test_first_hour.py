@@ -89,6 +89,11 @@ def test_rows_of_other_parts_stay() -> None:
         "| a part | 2 s | 1 s | yes | `make part` |",
     ]
     assert after[2:] == rows[1:]
+    what = [row.strip("| ").split(" | ")[0] for row in rows]
+    ends = [Figure(name, "5 s", "9 s", False, "make all") for name in (what[0], what[-1])]
+    made = first_hour.written(ends, keep=True)
+    after = [line for line in made.splitlines() if line.startswith("| ")][2:]
+    assert [row.strip("| ").split(" | ")[0] for row in after] == what
 
 
 def test_ratios_are_measured_with_the_same_steps(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -69,15 +69,16 @@ def test_timed_motion_keeps_its_time(tmp_path: Path) -> None:
     assert len(rates) > 5 and sum(1 / rate for rate in rates) == pytest.approx(0.5, rel=1e-3)
 
 
+LEAVES = "this motion leaves the height map: X 0 to 100, Y 0 to 80 (Passo)"
 REFUSED = {
-    "G0 X0 Y0 Z0\nG1 X101 F100": "2: this motion leaves the height map: X 0 to 100, Y 0 to 80",
+    "G0 X0 Y0 Z0\nG1 X101 F100": f"2: {LEAVES}",
     "G0 X98 Y40 Z0\nG3 X98 Y40 I1 F100": "",
-    "G0 X98 Y40 Z0\nG3 X98 Y40 I1.5 F100": "2: this motion leaves the height map: X 0 to 100, Y 0 to 80",
-    "G0 X0 Y0\nG1 X9 F100": "2: Z is not known: move it before, for the height map",
-    "G0 Z0 Y0\nG1 X9 F100": "2: where this motion begins is not known: move X, Y, Z before",
-    "G0 X0 Y0 Z0\nG92 X5": "2: the origin of the height map cannot be moved behind its first motion",
-    "G0 X0 Y0 Z0\nG55 X1": "2: the origin of the height map cannot be moved behind its first motion",
-    "G0 X0 Y0 Z3\nG81 Z0 R1 F9": "2: cycles do not follow a height map: write out their motions",
+    "G0 X98 Y40 Z0\nG3 X98 Y40 I1.5 F100": f"2: {LEAVES}",
+    "G0 X0 Y0\nG1 X9 F100": "2: Z is not known: move it before, for the height map (Passo)",
+    "G0 Z0 Y0\nG1 X9 F100": "2: where this motion begins is not known: move X, Y, Z before (Passo)",
+    "G0 X0 Y0 Z0\nG92 X5": "2: the origin of the height map cannot be moved behind its first motion (Passo)",
+    "G0 X0 Y0 Z0\nG55 X1": "2: the origin of the height map cannot be moved behind its first motion (Passo)",
+    "G0 X0 Y0 Z3\nG81 Z0 R1 F9": "2: cycles do not follow a height map: write out their motions (Passo)",
     "G55 G0 X0 Y0 Z0\nG43.1 Z1\nG0 Z3": "",
 }
 

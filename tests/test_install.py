@@ -2,18 +2,21 @@
 """The installed package, from a wheel in an environment of its own, outside of the repository."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
 import venv
 import zipfile
 from dataclasses import dataclass
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
 
 import numpy
 import pytest
 from cocotb_tools.check_results import get_results
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
 from passo.build import Parameters, judge_library, planner_library, rtl_library
 from passo.cache import cached
 from passo.run import parameters_for
@@ -51,6 +54,27 @@ def wheel() -> Path:
 
     (made,) = cached("wheel", [*top, *files], [version("setuptools")], make).glob("*.whl")
     return made
+
+
+def named(file: Path) -> set[str]:
+    """The packages of a file of requirements and of those that it includes."""
+    text = file.read_text(encoding="utf-8")
+    included = [named(file.with_name(other)) for other in re.findall(r"(?m)^-r (\S+)", text)]
+    return {canonicalize_name(name) for name in re.findall(r"(?m)^([\w.-]+)==", text)}.union(*included)
+
+
+@pytest.mark.parametrize("file", sorted(paths.root.glob("requirements*.txt")), ids=lambda path: path.stem)
+def test_each_set_names_all_that_its_packages_need(file: Path) -> None:
+    """As tools/setup.sh has pip resolve nothing; beside a set are only the packages of requirements.txt."""
+    there = named(file) | named(paths.root / "requirements.txt")
+    for name in sorted(named(file)):
+        try:
+            needed = [Requirement(text) for text in requires(name) or ()]
+        except PackageNotFoundError:
+            continue  # a set that is not installed
+        for one in needed:
+            if one.marker is None or one.marker.evaluate({"extra": ""}):
+                assert canonicalize_name(one.name) in there, f"{file.name}: {name} needs {one}"
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,8 @@ import re
 import signal
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
@@ -19,8 +20,9 @@ from passo import bench, cli, console
 from passo.campaign import Campaign, carry_out
 from passo.campaign_cluster import local_cluster
 from passo.engine import Engine
+from passo.toolchain import paths
 
-from benchmarks import gcode_compare, squaring
+from benchmarks import backlash, gcode_compare, hosts_all, rigid_tapping, squaring
 from verify.mutants import engine_judge
 from verify.mutants import run as mutants
 from verify.mutants.fates import Fate
@@ -147,6 +149,13 @@ def test_a_stage_that_lasts(
         lines = [line for line in said.err.splitlines() if line.startswith("synthesis: 0:0")]
         assert re.fullmatch(rf"synthesis: 0:0[0-9]{left}", lines[0]), lines
     time.sleep(0.3)
+    tell = console.stages()
+    tell("packing")
+    time.sleep(0.15)
+    tell.end()
+    assert json.loads((tmp_path / console.LASTED).read_text())["packing"] > 0.1
+    capsys.readouterr()
+    time.sleep(0.3)
     assert capsys.readouterr().err == ""
     assert json.loads((tmp_path / console.LASTED).read_text())["synthesis"] > 0.3
 
@@ -194,6 +203,129 @@ def test_gantries_that_are_interrupted(
     with pytest.raises(SystemExit, match="canceled"):
         squaring.main(["6"])
     assert capsys.readouterr().out.startswith("2 gantries: at most ")
+
+
+def commands() -> dict[str, Path]:
+    """Modules that the Makefile or a person runs, and their sources."""
+    makefile = (paths.root / "Makefile").read_text(encoding="utf-8")
+    named = set(re.findall(r"python3? (?:-m )?([\w./]+?)(?:\.py)?(?![\w./])", makefile))
+    benchmarks = (paths.root / "benchmarks").glob("*.py")
+    named |= {f"benchmarks.{path.stem}" for path in benchmarks if is_program(path)}
+    found = {}
+    for name in (one.replace("/", ".") for one in named):
+        tail = Path(*name.split(".")).with_suffix(".py")
+        roots = (paths.root, paths.sim, paths.syn, paths.stm32_bridge)
+        found[name] = next(root / tail for root in roots if (root / tail).exists())
+    return found
+
+
+def is_program(path: Path) -> bool:
+    return '__name__ == "__main__"' in path.read_text(encoding="utf-8")
+
+
+# A command whose parts say what is left, or one that takes no longer than two seconds.
+PARTS = {
+    "verify.run": ("verify.formal.run", "verify.equal.run", "verify.equal.wiring", "verify.soak.parts"),
+    "verify.page": (), "verify.formal.page": (), "benchmarks.page": (), "benchmarks.path_page": (),
+    "benchmarks.play_case": (), "benchmarks.plan_record": (),
+    "tools.check_names": (), "tools.count_words": (), "tools.lint_prose": (), "tools.lint_rtl": (),
+    **{f"spec.generate_{what}": () for what in ("registers", "pins", "moves", "shapes", "package", "gcode")},
+}  # fmt: skip
+TELLS = re.compile(r"from passo\.console import [^\n]*(?:Estimate|stages|progress|each|passing)")
+
+
+def tells(source: Path) -> bool:
+    """Whether a program uses what says how long it still takes, beyond importing it."""
+    text = source.read_text(encoding="utf-8")
+    called = re.search(r"(?<!def )\b(?:Estimate|stages|progress|each|passing)\(", text)
+    return bool(TELLS.search(text) and called)
+
+
+@pytest.mark.parametrize("name", commands())
+def test_every_command_says_what_is_left(name: str) -> None:
+    """Or its parts do; those of passo are tested below."""
+    source = commands()[name]
+    if name not in PARTS:
+        assert tells(source), f"{name} has no estimate of what is left: see passo.console"
+        return
+    assert not tells(source), f"{name} is no exception any more"
+    for part in PARTS[name]:
+        assert tells(paths.root / Path(*part.split(".")).with_suffix(".py")), part
+
+
+def test_the_exceptions_are_commands() -> None:
+    assert PARTS.keys() <= commands().keys()
+
+
+# The modules behind the commands of passo that compute.
+PASSO = {
+    *("bench", "campaign_command", "demo", "make_command", "part_command", "preview_command", "run_command"),
+    *("terminal",),
+}
+
+
+@pytest.mark.parametrize("name", sorted(PASSO))
+def test_every_long_command_of_passo_says_what_is_left(name: str) -> None:
+    assert tells(paths.sim / "passo" / f"{name}.py")
+
+
+@pytest.mark.parametrize("name", ["bench", "grbl_bench", "demo"])
+def test_the_measurements_of_the_firmware_say_what_is_left(name: str) -> None:
+    assert tells(paths.stm32_bridge / "passo_stm32" / f"{name}.py")
+
+
+def test_hosts_that_are_interrupted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Parts that are finished stand in their files; there is no page."""
+
+    def part(_: Any) -> Any:
+        yield hosts_all.Row("what", "figure", "", True)
+
+    monkeypatch.setattr(hosts_all, "RESULTS", tmp_path)
+    monkeypatch.setattr(hosts_all, "PARTS", {name: (name, part) for name in ("one", "two", "three")})
+    monkeypatch.setattr(hosts_all, "run", interrupt_after(2, hosts_all.run))
+    monkeypatch.setattr(
+        hosts_all, "write_text", lambda path, text: path.parent == tmp_path and path.write_text(text)
+    )
+    monkeypatch.setattr(sys, "argv", ["hosts_all"])
+    assert hosts_all.main() == 1
+    said = capsys.readouterr()
+    assert sorted(path.stem for path in tmp_path.iterdir()) == ["one", "two"]
+    assert "hosts: three" in said.out and "canceled" in said.err and "written" not in said.out
+
+
+def test_taps_that_are_interrupted(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Those that are cut are judged."""
+
+    @contextmanager
+    def progress(_: str, total: int) -> Iterator[Callable[[int], None]]:
+        def report(chords: int) -> None:
+            if chords > total / 3:
+                raise KeyboardInterrupt
+
+        yield report
+
+    monkeypatch.setattr(rigid_tapping, "progress", progress)
+    monkeypatch.setattr(sys, "argv", ["rigid_tapping", "--passes", "2"])
+    assert rigid_tapping.main() == 1
+    passes = [line for line in capsys.readouterr().out.splitlines() if re.match(r" +\d+ +\d\.\d{4} ", line)]
+    assert len(passes) == 1
+
+
+def test_circles_that_are_interrupted(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The one that is made is shown."""
+    monkeypatch.setattr(
+        backlash, "machine", interrupt_after(1, lambda *_: backlash.Result(np.ones(2), np.ones(2), 1))
+    )
+    monkeypatch.setattr(sys, "argv", ["backlash"])
+    with pytest.raises(SystemExit, match="canceled"):
+        backlash.main()
+    assert "without trackers" in capsys.readouterr().out
 
 
 def interrupt_after(calls: int, function: Callable[..., Any]) -> Callable[..., Any]:

@@ -6,13 +6,17 @@ from pathlib import Path
 
 import pytest
 from passo.expand.block import words_of
+from passo.expand.place import BOTH, FANUC, ITSELF, LINUXCNC, NIST, LineError
 from passo.expand.refusals import ADVICE, LETTERS, NORMS, OTHERWISE, SAID, explain_text
 from passo.failure import BadInputError
 from passo.gcode import Gcode, GcodeError, GcodeSettings
 from passo.machine_file import read_machine
 from passo.part import read_part
+from passo.toolchain import paths
 from passo.web import EXAMPLE
 
+from tests.test_expand import REFUSED, UNKNOWN
+from tests.test_expand_compensation import REFUSED as CONTOURS
 from tests.test_gcode import ERRORS
 from tests.test_gcode_words import ROWS
 
@@ -83,6 +87,24 @@ def test_norms_are_those_of_the_table() -> None:
     """docs/gcode.md has all words with their norms."""
     table = {word: norm for words, _, norm in ROWS for word in words}
     assert {word: norm for word, norm in table.items() if norm != "NIST"} == NORMS
+
+
+EXPANDED = {**REFUSED, **UNKNOWN, **CONTOURS}
+
+
+@pytest.mark.parametrize("text", EXPANDED)
+def test_what_cannot_be_expanded_names_its_norm(text: str) -> None:
+    """Of a word with the word, of a line or an O word at its end."""
+    assert re.search(rf"\({NORM}(?:\)|: )", EXPANDED[text]), EXPANDED[text]
+
+
+def test_every_error_of_the_expander_has_a_norm() -> None:
+    """No sentence is raised without one, in all of its sources."""
+    for path in sorted((paths.sim / "passo" / "expand").glob("*.py")):
+        for bare in re.findall(r'ExpandError\(\s*[^,()]+,\s*f?"[^)]*', path.read_text(encoding="utf-8")):
+            assert re.search(r"\{(?:told|error\.reason)\}", bare), f"{path.name}: {bare}"
+    assert [str(LineError("a", norm)) for norm in (LINUXCNC, ITSELF)] == ["a (LinuxCNC)", "a (Passo)"]
+    assert {NIST, LINUXCNC, FANUC, *BOTH.split(", ")} <= set(NAMES)
 
 
 def test_a_probe_that_there_is_not(tmp_path: Path) -> None:

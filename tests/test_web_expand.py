@@ -4,7 +4,7 @@
 import json
 import random
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,7 @@ import pytest
 from passo import random_cases, web_python
 from passo.cli import main
 from passo.expand.expander import Options, expand_file
+from passo.expand.output import PlainLine
 from passo.expand.place import ExpandError
 from passo.expand.tools import read_tools
 from passo.gcode import GcodeSettings
@@ -26,7 +27,7 @@ from benchmarks.gcode_corpus import contours, corpus
 from benchmarks.gcode_language import language_program
 from tests.helpers.browser import Browser
 from tests.helpers.firefox import Firefox
-from tests.test_expand import REFUSED, UNKNOWN
+from tests.test_expand import ALL, REFUSED, UNKNOWN
 from tests.test_web import ANSWER, READY, VERDICT, saved, verdict_of
 
 pytestmark = pytest.mark.skipif(
@@ -97,10 +98,15 @@ def of_the_command(folder: Path, program: str, options: Options) -> dict[str, An
     try:
         lines = expand_file(path, options, said.append)
     except ExpandError as error:
-        wrong = f"line {error.place.line}: {error.reason}".replace(f"{folder}/", "")
-        return {"kind": "expanded", "said": said, "wrong": wrong}
+        wrong = str(error).replace(f"{path}:", "line ").replace(f"{folder}/", "")
+        return {"kind": "expanded", "said": said, "wrong": wrong, **plain(error.lines)}
+    return {"kind": "expanded", "said": said, **plain(lines)}
+
+
+def plain(lines: Sequence[PlainLine]) -> dict[str, list[str]]:
+    """As the page has them."""
     places = [f"line {line.place.line}" for line in lines]
-    return {"kind": "expanded", "said": said, "lines": [line.text for line in lines], "places": places}
+    return {"lines": [line.text for line in lines], "places": places}
 
 
 def is_same(browser: Browser | Firefox, folder: Path, programs: list[str], tools: str = TOOLS) -> int:
@@ -136,7 +142,7 @@ def test_random_programs(browser: Browser, tmp_path: Path) -> None:
 
 def test_refusals(browser: Browser, tmp_path: Path) -> None:
     """The sentences are those of the command."""
-    assert is_same(browser, tmp_path, [*REFUSED, *UNKNOWN]) > len(REFUSED) / 2
+    assert is_same(browser, tmp_path, [*REFUSED, *UNKNOWN, *ALL]) > len(REFUSED) / 2
 
 
 def test_both_browsers_play_what_they_expand(either: Browser | Firefox, tmp_path: Path) -> None:
@@ -160,6 +166,14 @@ def test_what_it_says(browser: Browser) -> None:
     said, wrong = browser.value(ANSWER).splitlines()
     assert said == "one" and wrong.endswith(": A2 (NIST): the machine has the axes X Y Z")
     assert browser.value("passo") is None
+
+
+def test_it_says_all_that_is_wrong(browser: Browser) -> None:
+    """A sentence for each line, of those that cannot be expanded and of those that are refused then."""
+    said = verdict_of(browser, "G1 X[1/0] F9\nG38.2 Z-1 F[9]\nG0 Y-")
+    wrong = browser.value(ANSWER).splitlines()
+    assert said == f"error: {wrong[0]} (3 errors, listed below)"
+    assert [line[:8] for line in wrong] == ["line 1: ", "line 3: ", "line 2: "]
 
 
 def test_places_of_plain_lines(browser: Browser) -> None:

@@ -14,6 +14,8 @@ import sys
 from collections.abc import Iterable
 from pathlib import Path
 
+from passo.console import stages
+
 PLACE = re.compile(r"(?<![\w./-])((?:/|\w|\.{1,2}/)[\w./-]*\.\w+|Makefile)(?::(\d+))?")
 
 
@@ -33,7 +35,8 @@ def main() -> int:
     parser.add_argument("name")
     parser.add_argument("command", nargs=argparse.REMAINDER)
     options = parser.parse_args()
-    print(f"== {options.name}", flush=True)
+    tell = stages()
+    tell(f"lint: {options.name}")
     said = []
     with subprocess.Popen(
         options.command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace"
@@ -41,6 +44,7 @@ def main() -> int:
         for line in process.stdout or ():
             print(line, end="", flush=True)
             said.append(line)
+    tell.end()
     if process.returncode:
         file = first_file(said)
         told = [f"{options.name} failed", f"look first at {file}" if file else "", options.hint]

@@ -17,6 +17,7 @@ matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
 from matplotlib.figure import Figure
+from passo.console import each
 from passo.output import complete
 from passo.toolchain import paths
 from passo_fpga.boards import boards
@@ -45,7 +46,7 @@ def pictures() -> Iterator[tuple[str, Any, Callable[[], Figure]]]:
 def main() -> None:
     """Draw all of them."""
     IMAGES.mkdir(exist_ok=True)
-    for name, facts, draw in pictures():
+    for name, facts, draw in each("pictures", list(pictures())):
         figure = draw()
         with complete(IMAGES / name) as part:
             figure.savefig(part, dpi=110, facecolor="white", metadata={DIGEST: digest(facts)})

@@ -9,8 +9,8 @@ those of the commit. Uncommitted changes are an error.
 
     source/        the repository
     machines/      of each examples/machines/*.toml: bitstream, firmware, settings, wiring
-    sbom.json      CycloneDX: version and license of each Python package and each Debian tool
-    licenses/      of the Debian tools; those of the packages are in sbom.json
+    sbom.json      CycloneDX: version and license of each package of requirements*.txt and each Debian tool
+    licenses/      of the Debian tools, and of packages that only have a file; the others are in sbom.json
     tested.md      each promise, the command, the result, the date (tools/release.toml)
     SHA256SUMS     of all files
 """
@@ -27,8 +27,10 @@ import sys
 import tarfile
 import tempfile
 import tomllib
+from importlib.metadata import distribution
 from pathlib import Path
 
+from passo.console import stages
 from passo.failure import BadInputError, Failure
 from passo.make_command import make_machine
 from passo.output import write_bytes, write_text
@@ -36,11 +38,11 @@ from passo.toolchain import paths, short
 
 PROMISES = paths.tools / "release.toml"
 MACHINES = sorted((paths.examples / "machines").glob("*.toml"))
+# What images are made with, and what every setup has.
 DEBIAN = (
-    "gcc-arm-none-eabi",
-    "libnewlib-arm-none-eabi",
-    "binutils-arm-none-eabi",
-)  # what images are made with
+    *("gcc-arm-none-eabi", "libnewlib-arm-none-eabi", "binutils-arm-none-eabi"),
+    *("python3", "iverilog", "g++", "make", "perl", "git", "liblz4-dev", "zlib1g-dev"),
+)
 # of a machine; the compiler also leaves files that contain paths
 SHIPPED = (".bin", ".bit", ".fs", ".hex", ".html", ".sh", ".svg", ".txt")
 COPYRIGHT = "/usr/share/doc/{}/copyright"
@@ -109,8 +111,29 @@ def debian_components() -> list[dict[str, object]]:
     return made
 
 
-def bill_of_materials(epoch: str) -> bytes:
-    """The tools that are installed now."""
+def pinned() -> set[str]:
+    """The names of all packages of requirements*.txt, in one spelling."""
+    lines = "\n".join(path.read_text(encoding="utf-8") for path in paths.root.glob("requirements*.txt"))
+    return {spelled(name) for name in re.findall(r"(?m)^([\w.-]+)==", lines)}
+
+
+def spelled(name: str) -> str:
+    """The name of a package, of which there are several spellings."""
+    return re.sub(r"[-_.]+", "-", name).lower()
+
+
+def license_files(name: str) -> dict[str, bytes]:
+    """Those of an installed package, as members of the archive."""
+    beside = [path for path in distribution(name).files or () if "licen" in path.name.lower()]
+    text = b"\n".join(Path(str(path.locate())).read_bytes() for path in beside)
+    return {f"licenses/{name}.txt": text} if text else {}
+
+
+def bill_of_materials(epoch: str, complete: bool) -> dict[str, bytes]:
+    """The tools that the repository names, whatever else is installed, and licenses that are but files.
+
+    Raises Failure if it must be complete and one is not installed.
+    """
     program = Path(sys.executable).with_name("cyclonedx-py")
     options = (
         "--output-reproducible",
@@ -119,10 +142,24 @@ def bill_of_materials(epoch: str) -> bytes:
         paths.root / "pyproject.toml",
     )
     made = json.loads(call(program, "environment", *options, sys.executable, SOURCE_DATE_EPOCH=epoch))
-    # the project itself is the component of the metadata
-    others = [part for part in made["components"] if part["name"] != "passo"]
-    made["components"] = sorted((*others, *debian_components()), key=lambda part: part["bom-ref"])
-    return json.dumps(made, indent=1, sort_keys=True).encode() + b"\n"
+    named = pinned()
+    parts = [part for part in made["components"] if spelled(part["name"]) in named]
+    if complete and (missing := named - {spelled(part["name"]) for part in parts}):
+        raise Failure(f"not installed, but in requirements*.txt: {', '.join(sorted(missing))}")
+    files: dict[str, bytes] = {}
+    for part in parts:
+        if not part.get("licenses"):
+            files |= license_files(part["name"])
+            part["licenses"] = [{"license": {"name": f"see licenses/{part['name']}.txt"}}]
+    parts += debian_components()
+    made["components"] = sorted(parts, key=lambda part: part["bom-ref"])
+    there = {part["bom-ref"] for part in (*parts, made["metadata"]["component"])}
+    made["dependencies"] = [
+        one | {"dependsOn": [ref for ref in one.get("dependsOn", ()) if ref in there]}
+        for one in made["dependencies"]
+        if one["ref"] in there
+    ]
+    return {"sbom.json": json.dumps(made, indent=1, sort_keys=True).encode() + b"\n", **files}
 
 
 def source_files() -> dict[str, tuple[bytes, int]]:
@@ -170,11 +207,14 @@ def make_release(out: Path, machines: bool = True) -> Path:
     """Make the archive of HEAD; the machines are made of the sources as they are now."""
     epoch, name = git("log", "-1", "--format=%ct", "HEAD"), release_name()
     files = source_files()
+    tell = stages()
     if machines:
+        tell(f"release: {len(MACHINES)} machines")
         os.environ["SOURCE_DATE_EPOCH"] = epoch
         with tempfile.TemporaryDirectory() as folder:
             files |= machine_files(Path(folder))
-    files["sbom.json"] = (bill_of_materials(epoch), 0)
+    tell("release: bill of materials")
+    files |= {path: (content, 0) for path, content in bill_of_materials(epoch, machines).items()}
     files["tested.md"] = (tested().encode(), 0)
     for part in debian_components():
         files[f"licenses/{part['name']}.txt"] = (Path(COPYRIGHT.format(part["name"])).read_bytes(), 0)

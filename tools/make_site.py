@@ -17,6 +17,7 @@ import sys
 from pathlib import Path
 from subprocess import PIPE, STDOUT
 
+from passo.console import stages
 from passo.toolchain import paths, short
 
 from tools.c_api import Interface
@@ -174,12 +175,19 @@ def main() -> int:
     parser.add_argument("--no-web", action="store_true", help="without the page of moves")
     options = parser.parse_args()
     shutil.rmtree(PAGES.parent, ignore_errors=True)
+    tell = stages()
+    tell("site: pages")
     stage_all()
+    tell("site: API")
     stage_api()
+    tell("site: notebooks")
     stage_notebooks()
     if not options.no_web:
+        tell("site: page of moves")
         stage_web()
+    tell("site: HTML")
     status = build_html()
+    tell.end()
     if status == 0:
         files = [file for file in HTML.rglob("*") if file.is_file()]
         size = sum(file.stat().st_size for file in files)

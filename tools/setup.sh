@@ -216,12 +216,13 @@ show_progress() {
     done
 }
 
-# The number of packages, unless it is unknown, and the arguments of pip.
+# The number of packages, unless it is unknown, and the arguments of pip. The files name all packages with their
+# versions, so there is nothing to resolve; Python compiles what is imported.
 pip_install() {
     local packages=$1
     shift
     PYTHONUNBUFFERED=1 .venv/bin/python -m pip install --no-input --disable-pip-version-check \
-        --progress-bar off "$@" | show_progress "$packages" ||
+        --progress-bar off --no-deps --no-compile "$@" | show_progress "$packages" ||
         fail "pip could not install the Python packages; its message is above." \
             "Check the network and pip's own configuration (.venv/bin/pip config list), then run" \
             "'make setup' again. It continues where it stopped."
@@ -241,7 +242,7 @@ fi
 
 if ! venv_is_current; then
     step "Installing passo in editable mode"
-    pip_install "" --no-deps --no-build-isolation -e .
+    pip_install "" --no-build-isolation -e .
 
     echo "$key" >"$stamp"
 fi

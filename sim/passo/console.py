@@ -189,6 +189,12 @@ class Stages:
         self.stage, self.since = words, now
         print(f"[{_minutes(now - self.began).rjust(6)}] {words}", flush=True)
 
+    def end(self) -> None:
+        """The last stage has ended, as one that fails has not: the next run knows how long it lasted."""
+        if self.stage:
+            _remember(self.stage, time.monotonic() - self.since)
+        self._ended.set()
+
     def lasts(self) -> str:
         """Such as `synthesis: 0:20, 1:05 left`, or `synthesis: 0:20` when nothing is known of it."""
         passed = time.monotonic() - self.since
@@ -196,7 +202,7 @@ class Stages:
         return f"{self.stage}: {_minutes(passed)}" + (f", {_minutes(left)} left" if left > 0 else "")
 
 
-def stages() -> Callable[[str], None]:
+def stages() -> Stages:
     """Return a function that prints a line for each stage; see Stages."""
     return Stages()
 

@@ -30,12 +30,12 @@ EXAMPLES = (
     *("three_axes", "cosine", "sigmoid", "triangle", "there_and_back"),
     *("exact_time", "turn", "sigmoid_alpha", "seven_phases", "straight", "user_shape", "four_motors"),
 )
-LONG = ("four_motors", "there_and_back", "sigmoid", "turn")  # to simulate; these come first
 # examples with a machine or events
 MACHINES = ("homing", "probing", "hold_and_estop", "closed_loop", "laser", "feeder", "threading")
 PROGRAMS = {"engraving": "corexy"}  # G-code and its machine
 GANTRY = "gantry"  # a machine that is homed
 ALL = (*EXAMPLES, *MACHINES, *PROGRAMS, GANTRY)
+LONG = (GANTRY, "laser", "engraving", "four_motors")  # to simulate; these come first
 
 
 def run_example(name: str) -> tuple[list[Run], dict[str, Any]]:
@@ -122,7 +122,7 @@ def demo() -> bool:
     results = {}
     with ProcessPoolExecutor() as pool:
         _build_all(pool)
-        long = sorted(ALL, key=lambda name: name not in LONG)
+        long = [*LONG, *(name for name in ALL if name not in LONG)]
         waiting = {pool.submit(_run, name): name for name in long}
         with progress("examples", len(waiting)) as report:
             for count, done in enumerate(as_completed(waiting), 1):

@@ -6,7 +6,7 @@ Everything is checked before anything is written. Images that are up to date are
 
 import re
 import shlex
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -132,7 +132,8 @@ def _make_linuxcnc(machine: MachineFile, folder: Path, build: bool) -> bool:
     empty_folder(folder, (*results, SUMMARY))
     for name, lines in results.items():
         write_text(folder / name, "\n".join([*lines, ""]))
-    images = list(_bitstream(machine, chosen, folder / machine.path.stem)) if build and chosen else []
+    made = _bitstream(machine, chosen, folder / machine.path.stem, stages()) if build and chosen else ()
+    images = list(made)
     write_text(folder / SUMMARY, "\n".join([*summary, *images, ""]))
     print("\n".join([*summary, *images, f"written to {folder}: {', '.join(results)}, {SUMMARY}"]))
     return FAILED_BITSTREAM not in images
@@ -204,11 +205,10 @@ def _images(machine: MachineFile, chosen: Board, path: Path) -> Iterator[str]:
     said = make_firmware(*IMAGE[machine.chip], to, f"MACHINE={given}")
     flash = next(line.split(maxsplit=1)[1] for line in said.splitlines() if line.startswith("flash"))
     yield f"  {FIRMWARE}  {flash}"
-    yield from _bitstream(machine, chosen, path)
+    yield from _bitstream(machine, chosen, path, tell)
 
 
-def _bitstream(machine: MachineFile, chosen: Board, path: Path) -> Iterator[str]:
-    tell = stages()
+def _bitstream(machine: MachineFile, chosen: Board, path: Path, tell: Callable[[str], None]) -> Iterator[str]:
     bitstream = path.with_suffix(f".{chosen.device.family.suffix}")
     try:
         made = synth.make(chosen, *core_of(machine), bitstream.resolve(), tell, wired(machine, chosen))

@@ -15,7 +15,8 @@ from passo.driver import Driver, DriverError
 from passo.engine import Engine
 from passo.expand.expander import Options, expand_file, needs_expanding
 from passo.expand.height_map import HeightMap
-from passo.expand.place import Place
+from passo.expand.output import PlainLine
+from passo.expand.place import Place, ProgramError, listed
 from passo.expand.refusals import SLOW
 from passo.expand.tools import Tool, lengths
 from passo.failure import BadInputError
@@ -36,7 +37,6 @@ LOOPS_PER_SECOND = 1000  # polls of the driver
 FOLLOWS_PER_SECOND = 10_000  # the same in step with the spindle
 SLEWS_PER_SECOND = 20  # of hold and stop, from full speed
 STANDARD_INPUT, STDIN = Path("-"), Path("stdin")
-REFUSED_MOST = 20  # bad lines that are reported
 PATIENCE = 3600  # simulated seconds without an end of the path that are too many
 
 
@@ -181,9 +181,16 @@ def read_part(
     table = lengths(tools or {})
     gcode = new_gcode(machine.gcode, table)
     begin = _begin(gcode, machine)
-    whole, places, refused, chords, unread = [], [], [], 0, 0
+    refused: list[str] = []
+    whole, places, chords, unread = [], [], 0, 0
     for file in files:
-        text, where = _read(file, machine, tools or {}, surface, gcode)
+        try:
+            text, where = _read(file, machine, tools or {}, surface, gcode)
+        except ProgramError as error:  # the lines of the others are checked as well
+            if only:
+                raise
+            refused += map(str, error.each)
+            text, where = _plain(error.lines)
         if only:
             before, text, where = _split(file, text, where, only)
             checked = check_lines(before, gcode)
@@ -199,8 +206,7 @@ def read_part(
         whole += text[: checked.lines]
         places += where[: checked.lines]
     if refused:
-        more = len(refused) - REFUSED_MOST
-        raise BadInputError("\n".join([*refused[:REFUSED_MOST], *([f"and {more} more lines"] * (more > 0))]))
+        raise BadInputError("\n".join(listed(refused)))
     first = STDIN if files[0] == STANDARD_INPUT else files[0]
     return Part(first, whole, places, chords, position_of(gcode), unread, table, begin)
 
@@ -217,8 +223,7 @@ def _read(
     text = lines(data)
     if surface or needs_expanding(data):
         options = Options(machine.gcode, tools, at_zero=True, surface=surface, begin=begin)
-        expanded = expand_file(name, options, _say, data)
-        text, places = [f"{line.text}\n".encode() for line in expanded], [line.place for line in expanded]
+        text, places = _plain(expand_file(name, options, _say, data))
     else:
         places = [Place(name, number) for number in range(1, len(text) + 1)]
     if not any(map(has_words, text)):
@@ -226,6 +231,10 @@ def _read(
     if not text[-1].endswith(b"\n"):
         text[-1] += b"\n"  # another file may follow
     return text, places
+
+
+def _plain(expanded: Sequence[PlainLine]) -> tuple[list[bytes], list[Place]]:
+    return [f"{line.text}\n".encode() for line in expanded], [line.place for line in expanded]
 
 
 def _split(

@@ -13,6 +13,7 @@ from typing import Any
 from passo.build import engine_sources
 from passo.cache import cached
 from passo.compiler import call, headers, includes, sources
+from passo.console import stages
 from passo.failure import BuildError
 from passo.output import make_folder, write_text
 from passo.report_page import FOLDER, SHELL, page, source_of
@@ -95,6 +96,9 @@ def _json(value: Any) -> str:
 
 
 if __name__ == "__main__":
+    tell = stages()
+    tell("web: page")
     made = build(paths.results / "web")
+    tell.end()
     size = len(gzip.compress(made.read_bytes()))
     print(f"open: {short(made)} ({size / 1000:.0f} kB gzipped)")

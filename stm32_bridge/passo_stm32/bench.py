@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from passo.build import Parameters
-from passo.console import console
+from passo.console import console, stages
 from passo.engine import model_engine
 from passo.link import error_name
 from passo.output import write_text
@@ -191,14 +191,16 @@ def memory_report() -> str:
 
 def bench() -> None:
     """Measure, write docs/reference/firmware_report.md and show it."""
-    console.print("Planning ...")
+    tell = stages()
+    tell("firmware: planning")
     costs = plan_costs()
-    console.print("Frames and lines ...")
+    tell("firmware: frames and lines")
     others = other_costs()
-    console.print("A second of motion ...")
+    tell("firmware: a second of motion")
     share, where, stack = load()
-    console.print("Streams ...")
+    tell("firmware: streams")
     rates = {hz: lines_per_second(hz) for hz in (9_000_000, 18_000_000)}
+    tell.end()
     text = report(costs, others, (share, where, stack), rates, memory_report())
     write_text(REPORT, text)
     print(text)

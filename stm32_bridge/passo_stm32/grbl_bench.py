@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 from passo.build import Parameters
-from passo.console import console
+from passo.console import stages
 from passo.engine import model_engine
 from passo.output import write_text
 from passo.toolchain import paths
@@ -123,13 +123,15 @@ def memory() -> str:
 
 def bench(count: int = LINES, report: Path = REPORT) -> None:
     """Measure, write docs/reference/firmware_gcode_report.md and show it."""
-    console.print("Calls ...")
+    tell = stages()
+    tell("firmware: calls")
     calls = costs()
-    console.print("Lines per second ...")
+    tell("firmware: lines per second")
     checked = {baud: stream(baud, segments(COUNTED), "$C")[1] for baud in BAUDS}
     moved = {baud: moving(baud, 60_000, COUNTED) for baud in BAUDS}
-    console.print(f"{count} lines ...")
+    tell(f"firmware: {count} lines")
     rate, motions, good = moving(BAUDS[1], LONG_FEED, count)
+    tell.end()
     text = PAGE.read_text(encoding="utf-8").format(
         calls="\n".join(f"| {name} | {cost:,} |" for name, cost in sorted(calls.items())),
         line=f"{calls[READ] + calls[ADD]:,}",

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from passo.expand.expression import Parameters, Value, integer, read_index, read_value
-from passo.expand.place import LineError
+from passo.expand.place import NIST, LineError, UnsureError
 from passo.expand.scanner import Scanner
 
 COMMENT = re.compile(r"\(([^)\r\n]*)\)?|;([^\r\n]*)")
@@ -96,7 +96,7 @@ class Block:
             while not scanner.at_end:
                 self._read(scanner)
         except RecursionError:
-            raise LineError("brackets are nested too deeply") from None
+            raise LineError("brackets are nested too deeply", NIST) from None
 
     def _read(self, scanner: Scanner) -> None:
         if scanner.take("#"):
@@ -106,12 +106,12 @@ class Block:
             return
         letter = scanner.next
         if not ("a" <= letter <= "z"):
-            raise LineError(f"'{letter}' is no word")
+            raise LineError(f"'{letter}' is no word: write a letter and a value", NIST)
         scanner.take(letter)
         try:
             self.words.append((letter.upper(), read_value(scanner)))
         except LineError as error:
-            raise LineError(f"word {letter.upper()}: {error}") from None
+            raise _of_word(letter.upper(), error) from None
 
     def evaluate(self, parameters: Parameters) -> tuple[list[Word], list[tuple[int | str, float]]]:
         """The words and what the assignments set, all with the values before the line."""
@@ -120,9 +120,16 @@ class Block:
             try:
                 words.append(Word(letter, value(parameters)))
             except LineError as error:
-                raise LineError(f"word {letter}: {error}") from None
+                raise _of_word(letter, error) from None
         made: list[tuple[int | str, float]] = []
         for target, value in self.assignments:
             place = target if isinstance(target, str) else integer(target(parameters), "a parameter number")
             made.append((place, value(parameters)))
         return words, made
+
+
+def _of_word(letter: str, error: LineError) -> LineError:
+    """An error of its value."""
+    if isinstance(error, UnsureError):
+        return error
+    return type(error)(f"word {letter}: {error.reason}", error.norm)

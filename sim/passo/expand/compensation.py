@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
-from passo.expand.place import ExpandError, Place
+from passo.expand.place import NIST, ContourError, LineError, Place
 
 STRAIGHT = 0.05  # rad: a corner that turns less needs no arc
 ROUND = 0.004  # mm: the distances of both ends of an arc from its center may differ by this
@@ -97,9 +97,11 @@ class Compensation:
         begin, end, turn = self.programmed, step.end, _turn(step)
         radius = abs(end - step.center)
         if self._inside(step) and radius <= self.radius:
-            raise ExpandError(
+            raise ContourError(
                 step.place,
-                f"the tool's radius of {self.radius:g} mm does not fit inside the arc's {radius:g}",
+                LineError(
+                    f"the tool's radius of {self.radius:g} mm does not fit inside the arc's {radius:g}", NIST
+                ),
             )
         direction = _unit(begin - step.center) * 1j * turn
         sweep = _sweep(begin, end, step.center, turn)
@@ -126,10 +128,13 @@ class Compensation:
     def _enter_line(self, step: Step) -> None:
         way = step.end - self.programmed
         if abs(way) <= self.radius:
-            raise ExpandError(
+            raise ContourError(
                 step.place,
-                f"the first motion after G41 or G42 is {abs(way):g} mm and must be longer than the tool's "
-                f"radius, {self.radius:g} mm",
+                LineError(
+                    f"the first motion after G41 or G42 is {abs(way):g} mm and must be longer than the "
+                    f"tool's radius, {self.radius:g} mm",
+                    NIST,
+                ),
             )
         self.first, self.programmed = False, step.end
         step.end += self._normal(way / abs(way))
@@ -141,18 +146,23 @@ class Compensation:
         assert step.center is not None
         begin, end, turn = self._center, step.end, _turn(step)
         if abs(end - begin) <= self.radius:
-            raise ExpandError(
-                step.place, "the arc after G41 or G42 must end farther away than the tool's radius"
+            raise ContourError(
+                step.place,
+                LineError("the arc after G41 or G42 must end farther away than the tool's radius", NIST),
             )
         if self._inside(step) and abs(begin - step.center) <= self.radius:
-            raise ExpandError(step.place, "the tool does not fit inside the arc after G41 or G42")
+            raise ContourError(
+                step.place, LineError("the tool does not fit inside the arc after G41 or G42", NIST)
+            )
         inward = _unit(step.center - end)
         self.first, self.programmed = False, end
         step.end = end + self._normal(-inward * 1j * turn)
         chord = begin - step.end
         along = (chord * inward.conjugate()).real
         if along < TANGENT * abs(chord):
-            raise ExpandError(step.place, "the arc after G41 or G42 has no center with this tool")
+            raise ContourError(
+                step.place, LineError("the arc after G41 or G42 has no center with this tool", NIST)
+            )
         step.center = step.end + inward * abs(chord) ** 2 / (2 * along)
         self._center = step.end
         self._wait(_Waiting(step, begin, sweep=_sweep(begin, step.end, step.center, turn)))
@@ -206,8 +216,11 @@ class Compensation:
             other = _Path(arc.center, radius=abs(arc.end - arc.center) + change)
         points = _intersections(one, other)
         if not points:
-            raise ExpandError(
-                step.place, f"the tool's radius of {self.radius:g} mm does not fit into this inside corner"
+            raise ContourError(
+                step.place,
+                LineError(
+                    f"the tool's radius of {self.radius:g} mm does not fit into this inside corner", NIST
+                ),
             )
         return min(points, key=lambda point: abs(point - here))
 
@@ -237,10 +250,13 @@ class Compensation:
             gouges = sweep > item.sweep + LONGER and 2 * math.pi - sweep > LONGER
         if gouges:
             what = "arc" if center is not None else "line"
-            raise ExpandError(
+            raise ContourError(
                 item.step.place,
-                f"the tool's radius of {self.radius:g} mm would cut the contour: this {what} is too short "
-                "for the inside corners at its ends",
+                LineError(
+                    f"the tool's radius of {self.radius:g} mm would cut the contour: this {what} is too "
+                    "short for the inside corners at its ends",
+                    NIST,
+                ),
             )
 
 

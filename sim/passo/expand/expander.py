@@ -2,15 +2,17 @@
 """From a program with parameters, expressions, O words and cutter compensation to plain lines."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 from passo.expand.block import Word, split, texts, words_of
 from passo.expand.expression import Value, integer
 from passo.expand.flow import (
     FLOW,
+    LAST,
     Body,
     Call,
     Choice,
@@ -21,18 +23,29 @@ from passo.expand.flow import (
     Program,
     Repeat,
     Return,
+    Statement,
     Subroutine,
     number_label,
     read_program,
+    unreadable,
 )
 from passo.expand.height_map import HeightMap
 from passo.expand.machine import Machine
 from passo.expand.output import ENDS, Output, PlainLine
 from passo.expand.parameters import ProgramParameters
-from passo.expand.place import ExpandError, LineError, Place
+from passo.expand.place import (
+    FANUC,
+    ContourError,
+    ExpandError,
+    LineError,
+    Place,
+    ProgramError,
+    StateError,
+    UnsureError,
+)
 from passo.expand.tools import Tool
 from passo.failure import BadInputError
-from passo.gcode import GcodeSettings, lines
+from passo.gcode import GcodeError, GcodeSettings, lines
 
 LIMIT = 2_000_000  # lines executed in loops and subroutines
 SUFFIX = ".ngc"
@@ -42,6 +55,13 @@ NEEDS = re.compile(  # in a line of block.split()
     r"[#\[]|[-+][-+]|g0*4[12](?![0-9])|g0*(?:7[46]|84)(?![0-9.])|m0*9[89](?![0-9])"
 )
 CALL, BACK = 98, 99
+CALLS = re.compile(r"m0*98(?![0-9.])")
+SET = re.compile(r"#(?:([0-9]+)|<([^<>]+)>)=")  # what a line sets
+MOVES = re.compile(r"[abcxyz]")
+AFTER = 20_000  # lines that are still executed behind one that is refused
+# Errors of the interpreter that may follow from a line before that was left out.
+FOLLOWING = tuple(f"{GcodeError(number)}: " for number in (22, 31, 32, 33, 34, 42))
+STOPS = "of the lines behind it only the words are checked"
 
 
 @dataclass(frozen=True)
@@ -69,7 +89,7 @@ def expand_file(
 ) -> list[PlainLine]:
     """The plain lines of a program; `say` gets the texts of PRINT; `data`: what the file has, if it is read.
 
-    Raises BadInputError.
+    Raises BadInputError: ProgramError of all lines that are refused, as far as the others can be executed.
     """
     return _Run(path, options, say, data).run()
 
@@ -92,8 +112,12 @@ class _Ended(Exception):  # noqa: N818
     """M2 or M30."""
 
 
+class _Stopped(Exception):  # noqa: N818
+    """What follows cannot be executed."""
+
+
 class _Run:
-    """One run of a program."""
+    """One run of a program; a line that is refused is left out."""
 
     def __init__(self, path: Path, options: Options, say: Callable[[str], None], data: bytes | None):
         self.options, self.say, self.path, self.folder = options, say, path, path.parent
@@ -106,17 +130,41 @@ class _Run:
         self.program = _read(path) if data is None else read_program(path, _lines(data))
         self.files: dict[str, Program] = {}
         self.count, self.repeating = 0, 0
+        self.refused: dict[Place, ExpandError] = {}
+        self.limit = options.limit
 
     def run(self) -> list[PlainLine]:
         self.output.begin(Place(self.path, 1))
         try:
-            self._body(self.program.body)
-            self.output.finish()
-        except _Ended:
-            self.output.finish()
+            with suppress(_Ended):
+                self._body(self.program.body)
+            self.output.finish(check=not self.refused)
         except _Returned:
             raise AssertionError("M99 is refused where it is not in a subroutine") from None
+        except _Stopped:
+            for error in unreadable(self.program.lines):
+                self.refused.setdefault(error.place, error)
+        except ExpandError as error:
+            self._refuse(error)
+        if self.refused:
+            raise ProgramError([*self.refused.values()], self.output.lines)
         return self.output.lines
+
+    def _refuse(self, error: ExpandError, targets: Sequence[int | str] = (), any_name: bool = False) -> None:
+        """Leave out a line that would have set `targets`; what follows from another one is not said."""
+        why = error.why
+        follows = isinstance(why, StateError) or (isinstance(why, str) and why.startswith(FOLLOWING))
+        if not isinstance(why, UnsureError) and not (follows and self.refused):
+            for one in error.each:
+                self.refused.setdefault(one.place, one)
+        self.limit = min(self.limit, self.count + AFTER)
+        self.parameters.leave_out(targets, any_name)
+
+    def _stop(self, error: ExpandError) -> NoReturn:
+        """Where a program continues is not known."""
+        told = ExpandError(error.place, f"{error.reason}; {STOPS}")
+        self.refused.setdefault(error.place, told)
+        raise _Stopped
 
     def _body(self, body: Body) -> None:
         for statement in body:
@@ -126,15 +174,32 @@ class _Run:
             try:
                 self._statement(statement)
             except LineError as error:
-                raise ExpandError(statement.place, error) from None
+                self._leave_out(statement, ExpandError(statement.place, error))
+            except ExpandError as error:
+                self._leave_out(statement, error)
+
+    def _leave_out(self, statement: Statement, error: ExpandError) -> None:
+        """A statement cannot be executed: the next one is, unless it depends on this one."""
+        if isinstance(statement, Line):
+            targets = [int(number) if number else name for number, name in SET.findall(statement.bare)]
+            self._refuse(error, targets, any_name=bool(CALLS.search(statement.bare)))
+            if isinstance(error, ContourError) or MOVES.search(statement.bare):
+                self.output.drop_contour()
+            if LAST.search(statement.bare):
+                raise _Ended
+        elif isinstance(statement, Call):
+            self._refuse(error, ["_value"], any_name=True)
+        else:
+            self._stop(error)
 
     def _count(self, place: Place) -> None:
         self.count += 1
-        if self.count > self.options.limit:
-            raise ExpandError(
-                place,
-                f"endless? {self.options.limit:,} lines were executed in loops and subroutines",
-            )
+        if self.count > self.limit:
+            if self.limit < self.options.limit:
+                raise _Stopped
+            many = f"{self.options.limit:,} lines were executed in loops and subroutines"
+            self._refuse(ExpandError(place, LineError(f"endless? {many}")))
+            raise _Stopped
 
     def _statement(self, statement: object) -> None:
         match statement:
@@ -185,7 +250,7 @@ class _Run:
             try:
                 chosen = condition is None or condition(self.parameters) != 0
             except LineError as error:
-                raise ExpandError(place, error) from None
+                self._stop(ExpandError(place, error))
             if chosen:
                 self._body(body)
                 return
@@ -224,9 +289,11 @@ class _Run:
             self._body(subroutine.body)
         except _Returned as returned:
             value = returned.value
-        self.parameters.returned = None if value is None else value(self.parameters)
-        self.parameters.leave(keeps_arguments=False)
-        self.repeating -= 1
+        try:
+            self.parameters.returned = None if value is None else value(self.parameters)
+        finally:
+            self.parameters.leave(keeps_arguments=False)
+            self.repeating -= 1
 
     def _subroutine(self, label: str) -> Subroutine:
         """In a file that is read, or in one of its name beside the program; raises LineError."""
@@ -247,30 +314,32 @@ class _Run:
         """M98 P L calls what follows `O` and the number, M99 returns."""
         if BACK in commands:
             if not self.parameters.level:
-                raise LineError("M99 of the main program repeats it without end: write M2 or M30")
+                raise LineError("M99 of the main program repeats it without end: write M2 or M30", FANUC)
             raise _Returned(None)
         values = {word.letter: word.value for word in words}
         if "P" not in values or values.keys() - {"M", "N", "P", "L"}:
-            raise LineError("M98 takes P, the number of a subroutine, and L, how often; nothing else")
+            raise LineError("M98 takes P, the number of a subroutine, and L, how often; nothing else", FANUC)
         label, times = number_label(values["P"]), integer(values.get("L", 1.0), "L")
+        body = self._after(label)
         for _ in range(times):
             self._count(place)
             self.parameters.enter(None)
             self.repeating += 1
             try:
-                self._body(self._after(label))
+                self._body(body)
             except _Returned:
                 pass
             else:
-                raise LineError(f"the subroutine O{label} has no M99")
-            self.parameters.leave(keeps_arguments=True)
-            self.repeating -= 1
+                raise LineError(f"the subroutine O{label} has no M99", FANUC)
+            finally:
+                self.parameters.leave(keeps_arguments=True)
+                self.repeating -= 1
 
     def _after(self, label: str) -> Body:
         for at, statement in enumerate(self.program.body):
             if isinstance(statement, Label) and statement.label == label:
                 return self.program.body[at:]
-        raise LineError(f"there is no subroutine O{label} in this file")
+        raise LineError(f"there is no subroutine O{label} in this file", FANUC)
 
 
 def _read(path: Path) -> Program:

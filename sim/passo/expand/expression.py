@@ -9,7 +9,7 @@ import operator
 from collections.abc import Callable
 from typing import Protocol
 
-from passo.expand.place import LineError
+from passo.expand.place import NIST, LineError
 from passo.expand.scanner import NUMBER, Scanner
 
 EQUAL = 1e-4  # numbers nearer than this are EQ
@@ -36,7 +36,7 @@ def integer(value: float, what: str) -> int:
     """A value that must be an integer; raises LineError."""
     near = round(value)
     if abs(value - near) > INTEGER:
-        raise LineError(f"{what} must be an integer, not {value:g}")
+        raise LineError(f"{what} must be an integer, not {value:g}", NIST)
     return near
 
 
@@ -57,7 +57,8 @@ def read_value(scanner: Scanner) -> Value:
     for name in FUNCTIONS:
         if scanner.take(name):
             return _function(scanner, name)
-    raise LineError(f"a value is missing before '{scanner.rest}'" if scanner.rest else "a value is missing")
+    before = f" before '{scanner.rest}'" if scanner.rest else ""
+    raise LineError(f"a value is missing{before}: write a number, #, [ or a function", NIST)
 
 
 def read_bracket(scanner: Scanner) -> Value:
@@ -107,7 +108,7 @@ def _binary(function: Callable[[float, float], float], left: Value, right: Value
 
 def _finite(value: float) -> float:
     if not math.isfinite(value):
-        raise LineError("the result is too large")
+        raise LineError("the result is too large", NIST)
     return value
 
 
@@ -131,25 +132,25 @@ def _called(name: str, function: Callable[[float], float], argument: float) -> f
     try:
         return _finite(function(argument))
     except (ValueError, OverflowError):
-        raise LineError(f"{name.upper()}[{argument:g}] has no value") from None
+        raise LineError(f"{name.upper()}[{argument:g}] has no value", NIST) from None
 
 
 def _power(base: float, exponent: float) -> float:
     try:
         return math.pow(base, exponent)
     except (ValueError, OverflowError):
-        raise LineError(f"{base:g} ** {exponent:g} has no value") from None
+        raise LineError(f"{base:g} ** {exponent:g} has no value", NIST) from None
 
 
 def _divide(left: float, right: float) -> float:
     if right == 0:
-        raise LineError("division by zero")
+        raise LineError("division by zero", NIST)
     return left / right
 
 
 def _modulo(left: float, right: float) -> float:
     if right == 0:
-        raise LineError("MOD by zero")
+        raise LineError("MOD by zero", NIST)
     rest = math.fmod(left, right)
     return rest + abs(right) if rest < 0 else rest
 

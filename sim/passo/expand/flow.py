@@ -2,12 +2,14 @@
 """The structure of a program: its O words, as a tree of statements."""
 
 import re
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from passo.expand.block import Block, split
 from passo.expand.expression import Value, integer, read_bracket, read_value
-from passo.expand.place import ExpandError, LineError, Place
+from passo.expand.place import ExpandError, LineError, Place, ProgramError
 from passo.expand.scanner import Scanner
 
 FLOW = re.compile(r"/?(n[0-9]+)?o(?=[0-9<\[#])")
@@ -18,6 +20,9 @@ KEYWORDS = (
 )
 ENDS = {"while": "endwhile", "do": "while", "repeat": "endrepeat", "if": "endif", "sub": "endsub"}
 ARGUMENTS_MAX = 30
+WITH_VALUE = {"if", "elseif", "while", "repeat"}
+SIMPLE = re.compile(rf"(?:[0-9]+|<[^<>]+>)(?P<keyword>{'|'.join(KEYWORDS)})")
+LAST = re.compile(r"m(?:0*2|0*30)(?![0-9.])")  # M2, M30
 
 
 @dataclass
@@ -121,6 +126,7 @@ class Program:
     path: Path
     body: Body
     subroutines: dict[str, Subroutine]
+    lines: list[Line]  # all without an O word
 
 
 @dataclass
@@ -141,40 +147,59 @@ class _Word:
 
 @dataclass
 class _Open:
-    """A construct whose end is awaited."""
+    """A construct whose end is awaited; `told`: an error has named it."""
 
     word: _Word
     body: Body
+    told: bool = False
     branches: list[tuple[Place, Value | None, Body]] = field(default_factory=list)
 
 
 def read_program(path: Path, lines: list[str]) -> Program:
-    """The tree of a file; raises ExpandError with the line of a wrong O word."""
+    """The tree of a file; raises ProgramError: all wrong O words, and other lines that cannot be read."""
     return _Builder(path).read(lines)
 
 
 class _Builder:
     def __init__(self, path: Path):
-        self.program = Program(path, [], {})
+        self.program = Program(path, [], {}, [])
         self.stack: list[_Open] = []
         self.labels: set[tuple[str, str]] = set()
         self.body = self.program.body
 
     def read(self, lines: list[str]) -> Program:
+        wrong: dict[Place, ExpandError] = {}
         for number, text in enumerate(lines, 1):
             place = Place(self.program.path, number)
             bare, comments = split(text)
             try:
                 if found := FLOW.match(bare):
-                    self._take(_word(place, bare[found.end() :]))
+                    self._read(place, bare[found.end() :])
                 else:
-                    self.body.append(Line(place, text, bare, comments))
+                    line = Line(place, text, bare, comments)
+                    self.body.append(line)
+                    self.program.lines.append(line)
             except LineError as error:
-                raise ExpandError(place, error) from None
-        if self.stack:
-            word = self.stack[-1].word
-            raise ExpandError(word.place, f"{word.name} has no {ENDS[word.keyword]}")
+                wrong[place] = ExpandError(place, error)
+        for opened in self.stack:
+            if not opened.told:
+                word, end = opened.word, ENDS[opened.word.keyword]
+                missing = ExpandError(word.place, LineError(f"{word.name} has no {end}"))
+                wrong.setdefault(word.place, missing)
+        if wrong:
+            raise ProgramError([*wrong.values(), *unreadable(self.program.lines)])
         return self.program
+
+    def _read(self, place: Place, text: str) -> None:
+        """What follows an O; with wrong expressions it is taken without them, as what follows needs it."""
+        try:
+            word = _word(place, text)
+        except LineError:
+            if found := SIMPLE.match(text):
+                with suppress(LineError):
+                    self._take(_word(place, found[0] + "[0]" * (found["keyword"] in WITH_VALUE)))
+            raise
+        self._take(word)
 
     def _take(self, word: _Word) -> None:
         match word.keyword:
@@ -184,7 +209,7 @@ class _Builder:
                 self.body.append(Call(word.place, word.label, word.values))
             case "return":
                 if not any(opened.word.keyword == "sub" for opened in self.stack):
-                    raise LineError(f"{word.name} is not in a subroutine")
+                    raise LineError(f"{word.name} is not in a subroutine: write it between sub and endsub")
                 self.body.append(Return(word.place, word.values[0] if word.values else None))
             case "break" | "continue":
                 self._leave(word)
@@ -205,22 +230,27 @@ class _Builder:
 
     def _open(self, word: _Word) -> None:
         label = _label(word)
-        if word.keyword == "sub":
-            if self.stack:
-                raise LineError(f"{word.name} is within {self.stack[-1].word.name}")
-            if label in self.program.subroutines:
-                raise LineError(
-                    f"{word.name} is in line {self.program.subroutines[label].place.line} already"
-                )
-        scope = next((o.word.label for o in self.stack if o.word.keyword == "sub"), "")
-        if (str(scope), label) in self.labels and word.keyword != "sub":
-            raise LineError(f"{word.name}: another construct has this label")
-        self.labels.add((str(scope), label))
+        wrong = self._misplaced(word, label)
         opened = _Open(word, [])
         if word.keyword == "if":
             opened.branches.append((word.place, word.values[0], opened.body))
         self.stack.append(opened)
         self.body = opened.body
+        if wrong:  # its end belongs to it all the same
+            raise LineError(f"{word.name}{wrong}")
+
+    def _misplaced(self, word: _Word, label: str) -> str:
+        """What is wrong with a construct that begins here."""
+        if word.keyword == "sub":
+            if self.stack:
+                return f" is within {self.stack[-1].word.name}"
+            if label in self.program.subroutines:
+                return f" is in line {self.program.subroutines[label].place.line} already: write another name"
+            return ""
+        scope = str(next((o.word.label for o in self.stack if o.word.keyword == "sub"), ""))
+        known = (scope, label) in self.labels
+        self.labels.add((scope, label))
+        return ": another construct has this label: write another one" if known else ""
 
     def _branch(self, word: _Word) -> None:
         opened = self._opened(word, "if")
@@ -240,6 +270,8 @@ class _Builder:
     def _opened(self, word: _Word, keyword: str) -> _Open:
         if not self._closes(word, keyword):
             inner = f": {self.stack[-1].word.name} is open" if self.stack else ""
+            if self.stack:
+                self.stack[-1].told = True
             raise LineError(f"{word.name} has no {keyword}{inner}")
         return self.stack[-1]
 
@@ -265,6 +297,17 @@ class _Builder:
                 self.body.append(Loop(begin.place, label, begin.values[0], opened.body, False))
             case "do":
                 self.body.append(Loop(word.place, label, word.values[0], opened.body, True))
+
+
+def unreadable(lines: Iterable[Line]) -> Iterator[ExpandError]:
+    """The errors of lines that are not executed: of their words alone. Behind M2 and M30 nothing is read."""
+    for line in lines:
+        try:
+            line.block()
+        except LineError as error:
+            yield ExpandError(line.place, error)
+        if LAST.search(line.bare):
+            return
 
 
 def _label(word: _Word) -> str:

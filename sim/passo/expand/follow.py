@@ -12,7 +12,7 @@ from passo.expand.expander import Options
 from passo.expand.height_map import HeightMap
 from passo.expand.machine import CYCLES, FEED_MODE, MOTION, SYSTEM, Machine, Motion
 from passo.expand.output import PlainLine, parts
-from passo.expand.place import ExpandError
+from passo.expand.place import ITSELF, ExpandError, LineError, Place, ProgramError
 from passo.expand.refusals import explain
 from passo.expand.writer import Writer, length
 from passo.failure import BadInputError
@@ -30,13 +30,17 @@ def follow(lines: Sequence[PlainLine], height_map: HeightMap, options: Options) 
     if missing := next((axis for axis in "XYZ" if axis not in options.gcode.axis_letters), ""):
         raise BadInputError(f"the machine has no axis {missing} to follow a height map")
     follower = _Follower(height_map, options)
+    refused: dict[Place, ExpandError] = {}
     for line in lines:
         try:
             follower.take(line)
         except GcodeError as error:
-            raise ExpandError(
-                line.place, explain(error, words_of(line.text), follower.machine.gcode.settings)
-            ) from None
+            told = explain(error, words_of(line.text), follower.machine.gcode.settings)
+            refused.setdefault(line.place, ExpandError(line.place, told))
+        except ExpandError as error:
+            refused.setdefault(error.place, error)
+    if refused:
+        raise ProgramError([*refused.values()])
     return follower.lines
 
 
@@ -57,10 +61,13 @@ class _Follower:
         motion = self.machine.execute(line.text, words)
         if self.followed and (codes & MOVES_THE_MAP or self.machine.mode(SYSTEM) != system):
             raise ExpandError(
-                line.place, "the origin of the height map cannot be moved behind its first motion"
+                line.place,
+                LineError("the origin of the height map cannot be moved behind its first motion", ITSELF),
             )
         if self.machine.mode(MOTION) in CYCLES and any(word.letter in AXIS_LETTERS for word in words):
-            raise ExpandError(line.place, "cycles do not follow a height map: write out their motions")
+            raise ExpandError(
+                line.place, LineError("cycles do not follow a height map: write out their motions", ITSELF)
+            )
         if motion is None or codes & MACHINE_COORDINATES:
             self.lines.append(line)
             axes = {word.letter for word in words} & set(AXIS_LETTERS)
@@ -70,7 +77,10 @@ class _Follower:
         if not all(self.machine.knows(axis) for axis in (*XY, Z)):
             if not motion.rapid:
                 missing = next("XYZ"[axis] for axis in (*XY, Z) if not self.machine.knows(axis))
-                raise ExpandError(line.place, f"{missing} is not known: move it before, for the height map")
+                raise ExpandError(
+                    line.place,
+                    LineError(f"{missing} is not known: move it before, for the height map", ITSELF),
+                )
             self.lines.append(line)
             return
         self._motion(line, words, motion, known)
@@ -78,7 +88,9 @@ class _Follower:
     def _motion(self, line: PlainLine, words: Sequence[Word], motion: Motion, known: Sequence[bool]) -> None:
         machine = self.machine
         if not all(known) and not motion.rapid:
-            raise ExpandError(line.place, "where this motion begins is not known: move X, Y, Z before")
+            raise ExpandError(
+                line.place, LineError("where this motion begins is not known: move X, Y, Z before", ITSELF)
+            )
         lead, tail = parts(list(words), motion, machine.mode(FEED_MODE) == 930)
         begin = [at + self.added * (axis == Z) for axis, at in enumerate(motion.start)]
         for axis, is_known in zip((*XY, Z), known, strict=True):
@@ -136,7 +148,7 @@ class _Follower:
 
     def _check(self, line: PlainLine, places: Sequence[complex]) -> None:
         if not all(map(self.map.contains, places)):
-            raise ExpandError(line.place, f"this motion leaves the height map: {self.map}")
+            raise ExpandError(line.place, LineError(f"this motion leaves the height map: {self.map}", ITSELF))
 
 
 def _flat(place: Sequence[float]) -> complex:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from passo.expand.block import Word
 from passo.expand.machine import FEED_MODE, PLANE, RETRACT, SPINDLE, Machine
-from passo.expand.place import LineError
+from passo.expand.place import LineError, StateError
 from passo.gcode import AXIS_LETTERS, NANOMETERS
 
 DIAMETERS, RADII = 70, 80
@@ -152,7 +152,7 @@ class Lathe:
             yield rest
         letter, holes = NORMAL[machine.mode(PLANE)], round(values.pop("L", 1))
         if machine.mode(SPINDLE) != TAPPING[code]:
-            raise LineError(f"{name} needs M{TAPPING[code] // 10}")
+            raise StateError(f"{name} needs M{TAPPING[code] // 10}")
         height, tap = self._place(letter, name), self._tap
         initial = tap.initial if tap else height
         if not tap and (letter not in values or "R" not in values):
@@ -187,7 +187,7 @@ class Lathe:
             raise LineError(f"{name}: the machine has no axis {letter}")
         axis = self.machine.letters.index(letter)
         if not self.machine.knows(axis):
-            raise LineError(f"{name}: {letter} is not known: move it before")
+            raise StateError(f"{name}: {letter} is not known: move it before")
         return self.machine.work[axis] / self.machine.scale
 
     def _pitch(self, name: str) -> float:
@@ -195,7 +195,7 @@ class Lathe:
         machine, c = self.machine, self.machine.gcode.c
         feed, speed = c.feed / NANOMETERS / machine.scale, c.spindle / 1e6
         if not feed or not speed:
-            raise LineError(f"{name} needs F and S: the pitch is F / S, or F after G95")
+            raise StateError(f"{name} needs F and S: the pitch is F / S, or F after G95")
         return float(feed if machine.mode(FEED_MODE) == 950 else feed / speed)
 
 

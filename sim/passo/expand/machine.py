@@ -12,7 +12,7 @@ from typing import Any
 
 from passo.expand.block import Word
 from passo.expand.height_map import HeightMap
-from passo.expand.place import LineError
+from passo.expand.place import LineError, StateError
 from passo.expand.surface import share_of_probe
 from passo.expand.tools import Tool, lengths
 from passo.gcode import LINEAR, NANOMETERS, Gcode, GcodeSettings, set_tool_lengths
@@ -198,14 +198,14 @@ class Machine:
             axis = self._axis(axis)
             if system < len(SYSTEMS) and axis < self.axes and self._systems[system][axis]:
                 return float(c.offsets.system[system][axis] / NANOMETERS)
-            raise LineError(f"#{index} cannot be known: no G10 L2 before has set this offset")
+            raise StateError(f"#{index} cannot be known: no G10 L2 before has set this offset")
         if index == SHIFT[0] and self._shifted is not None:
             return float(self._shifted)
         if index in SHIFT:
             axis = self._axis(index - SHIFT[0] - 1)
             if axis < self.axes and self._shift[axis]:
                 return float(c.shift[axis] / NANOMETERS)
-            raise LineError(f"#{index} cannot be known: no G92.1 is before, or no G92 at a known position")
+            raise StateError(f"#{index} cannot be known: no G92.1 is before, or no G92 at a known position")
         if index in TOOL:
             return self._of_tool(index)
         if index in HOMES and self.at_zero:
@@ -264,11 +264,11 @@ class Machine:
 
     def _coordinate(self, axis: int, name: str) -> float:
         if self.compensation != 400:
-            raise LineError(f"{name} cannot be read while G41 or G42 is in force")
+            raise LineError(f"{name} cannot be read while G41 or G42 is in force: write G40 before")
         if axis >= self.axes:
             return 0.0
         if not self._position[axis]:
-            raise LineError(f"{name} cannot be known: no absolute motion of {self.letters[axis]} is before")
+            raise StateError(f"{name} cannot be known: no absolute motion of {self.letters[axis]} is before")
         return self.work[axis] / (self.scale if self.letters[axis] in LINEAR else 1.0)
 
     def _axis(self, letter: int) -> int:
@@ -292,7 +292,7 @@ class Machine:
             return 0.0
         if self.tool is None or index == 5403:
             what = "G43.1 or G49" if index == 5403 else "M6 or M61"
-            raise LineError(f"{name} cannot be known: no {what} is before")
+            raise StateError(f"{name} cannot be known: no {what} is before")
         if index == TOOL[0]:
             return float(self.tool)
         if self.tool == 0:

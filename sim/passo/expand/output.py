@@ -4,12 +4,12 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from passo.expand.block import Word
+from passo.expand.block import Word, words_of
 from passo.expand.compensation import Compensation, Step
 from passo.expand.height_map import HeightMap
 from passo.expand.lathe import DIAMETERS, Lathe, Said
 from passo.expand.machine import CYCLES, FEED_MODE, LINES_AND_ARCS, MOTION, PLANE, SYSTEM, Machine, Motion
-from passo.expand.place import ExpandError, LineError, Place
+from passo.expand.place import BOTH, ExpandError, LineError, Place, StateError
 from passo.expand.refusals import explain
 from passo.expand.surface import PROBES
 from passo.expand.writer import Writer, flat, length
@@ -97,8 +97,8 @@ class Output:
         machine = self.machine
         try:
             end = machine.probe(surface, text, words)
-        except (GcodeError, LineError) as error:
-            raise ExpandError(place, str(error)) from None
+        except GcodeError as error:
+            raise ExpandError(place, explain(error, words, machine.gcode.settings)) from None
         rest = [word for word in words if word.letter not in machine.letters and not _is_probe(word)]
         scales = [machine.scale if letter in LINEAR else 1.0 for letter in machine.letters]
         moved = map(Word, machine.letters, (at / scale for at, scale in zip(end, scales, strict=True)))
@@ -118,11 +118,15 @@ class Output:
         except GcodeError as error:
             raise ExpandError(place, explain(error, words, self.machine.gcode.settings)) from None
 
-    def finish(self) -> None:
-        """The program has ended; raises ExpandError."""
+    def drop_contour(self) -> None:
+        """A line is left out: the tool goes on as if G40 had been before."""
+        self._compensation, self._leaving, self.machine.compensation = None, False, OFF
+
+    def finish(self, check: bool = True) -> None:
+        """The program has ended; raises ExpandError. Without `check`, lines were left out."""
         if self._compensation:
             self._compensation.finish()
-        if self._compensated:
+        if self._compensated and check:
             self._check()
 
     def _check(self) -> None:
@@ -132,7 +136,8 @@ class Output:
             try:
                 gcode.execute(line.text)
             except GcodeError as error:
-                raise ExpandError(line.place, f"{error}: {line.text}") from None
+                told = explain(error, words_of(line.text), gcode.settings)
+                raise ExpandError(line.place, f"{told}; {line.text}") from None
             for _ in gcode.actions():
                 pass
 
@@ -159,7 +164,7 @@ class Output:
         motion = self._execute(" ".join(map(str, rest)), rest, place)
         drills = self.machine.mode(MOTION) in CYCLES and any(word.letter in AXIS_LETTERS for word in rest)
         if self._leaving and drills:
-            raise ExpandError(place, FIRST_AFTER)
+            raise ExpandError(place, StateError(FIRST_AFTER, BOTH))
         if turned_on:
             self._begin(min(turned_on), words, start, place)
             self._refuse(codes - turned_on, commands, place)
@@ -182,12 +187,12 @@ class Output:
         letters = {word.letter for word in words}
         plane = {self.machine.letters[axis] for axis in self._writer.plane}
         if codes & USES_POSITION:
-            raise ExpandError(place, FIRST_AFTER)
+            raise ExpandError(place, StateError(FIRST_AFTER, BOTH))
         if not codes & {280, 300, 530}:
             return False
         all_axes = plane <= letters or (not letters & set(AXIS_LETTERS) and 530 not in codes)
         if not all_axes and letters & plane:
-            raise ExpandError(place, FIRST_AFTER)
+            raise ExpandError(place, StateError(FIRST_AFTER, BOTH))
         self._execute(text, words, place)
         self.lines.append(PlainLine(text, place))
         self._leaving = not all_axes
@@ -206,25 +211,32 @@ class Output:
             refused.append(_name(machine.mode(MOTION)))
         if refused:
             raise ExpandError(
-                place, f"{refused[0]} cannot be used while {self._command} is in force: write G40 before"
+                place,
+                LineError(
+                    f"{refused[0]} cannot be used while {self._command} is in force: write G40 before", BOTH
+                ),
             )
 
     def _begin(self, code: int, words: Sequence[Word], start: tuple[float, ...], place: Place) -> None:
         machine, side = self.machine, ON[code]
         if machine.mode(PLANE) == 190:
-            raise ExpandError(place, f"{_name(code)} is for the planes XY and ZX: write G17 or G18")
+            raise ExpandError(
+                place, LineError(f"{_name(code)} is for the planes XY and ZX: write G17 or G18", BOTH)
+            )
         if max(machine.plane) >= machine.axes:
-            raise ExpandError(place, f"{_name(code)}: the machine has only one axis of this plane")
+            raise ExpandError(
+                place, LineError(f"{_name(code)}: the machine has only one axis of this plane", BOTH)
+            )
         radius = self._radius(code, words, place)
         if radius < 0:
             side, radius = -side, -radius
         machine.compensation = 410 if side > 0 else 420
-        if not radius:
-            return
         if not self._leaving:
             self._writer = Writer(machine.letters, machine.plane, list(start))
-        elif self._writer.plane != machine.plane:
-            raise ExpandError(place, FIRST_AFTER)
+        if not radius:
+            return
+        if self._writer.plane != machine.plane:
+            raise ExpandError(place, StateError(FIRST_AFTER, BOTH))
         self._leaving, self._compensated = False, True
         self._compensation = Compensation(side, radius, flat(start, self._writer.plane), self._emit)
 
@@ -233,19 +245,25 @@ class Output:
         machine = self.machine
         if code in (411, 421):
             if "D" not in values:
-                raise ExpandError(place, f"{_name(code)} needs the diameter of the tool: D")
+                raise ExpandError(place, LineError(f"{_name(code)} needs the diameter of the tool: D", BOTH))
             if values.get("L", 0) not in (0, 9):
-                raise ExpandError(place, f"{_name(code)}: L: edges of lathe tools are not supported")
+                raise ExpandError(
+                    place, LineError(f"{_name(code)}: L: edges of lathe tools are not supported", BOTH)
+                )
             return values["D"] * machine.scale / 2
         number = round(values["D"]) if "D" in values else machine.tool
         if number == 0:
             return 0.0
         if number is None:
-            raise ExpandError(place, f"{_name(code)}: which tool? Write M6, D or {_name(code + 1)} D")
+            raise ExpandError(
+                place, LineError(f"{_name(code)}: which tool? Write M6, D or {_name(code + 1)} D", BOTH)
+            )
         if number not in machine.tools:
             raise ExpandError(
                 place,
-                f"{_name(code)}: no tool table has T{number}: --tools, or {_name(code + 1)} D",
+                LineError(
+                    f"{_name(code)}: no tool table has T{number}: --tools, or {_name(code + 1)} D", BOTH
+                ),
             )
         return machine.tools[number].diameter / 2
 
@@ -262,7 +280,9 @@ class Output:
                 letter = self.machine.letters[axis]
                 raise ExpandError(
                     place,
-                    f"{letter} is not known at its beginning: move {letter} before {self._command}",
+                    StateError(
+                        f"{letter} is not known at its beginning: move {letter} before {self._command}", BOTH
+                    ),
                 )
 
     @property
@@ -280,7 +300,7 @@ class Output:
             step.speed = rate * length(step, motion.start, motion.end, plane)
         if self._compensation is None:
             if motion.center is not None:
-                raise ExpandError(place, FIRST_AFTER)
+                raise ExpandError(place, StateError(FIRST_AFTER, BOTH))
             self._leaving = False
             self._emit(step, place)
         elif motion.center is None:

@@ -3,7 +3,7 @@
 
 import re
 
-from passo.expand.place import LineError
+from passo.expand.place import NIST, LineError
 
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)")
 NAME = re.compile(r"<([^<>]+)>")
@@ -40,7 +40,7 @@ class Scanner:
     def need(self, token: str, where: str) -> None:
         """Read `token`; raises LineError."""
         if not self.take(token):
-            raise LineError(f"'{token}' is missing {where}, before '{self.rest}'")
+            raise LineError(f"'{token}' is missing {where}, before '{self.rest}'", NIST)
 
     def match(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
         """What `pattern` finds next; it is read then."""

@@ -9,6 +9,7 @@ from passo.expand.place import LineError
 
 PROBES = range(382, 386)  # toward, toward, away, away; every other one needs no touch
 AWAY, OPTIONAL = (384, 385), (383, 385)
+PROBING = "grbl, LinuxCNC"
 FINE = 1e-9  # share of a motion
 
 
@@ -27,7 +28,7 @@ def share_of_probe(
         return (height > surface.height(start + share * way)) == away
 
     if reached(0):
-        raise LineError("the probe touches already" if not away else "the probe does not touch")
+        raise LineError("the probe touches already" if not away else "the probe does not touch", PROBING)
     shares = [0.0, *(surface.cuts_of_line(start, start + way) if way else [1.0])]
     for low, high in pairwise(shares):
         if reached(high):
@@ -36,5 +37,5 @@ def share_of_probe(
                 low, high = (low, middle) if reached(middle) else (middle, high)
             return high
     if command not in OPTIONAL:
-        raise LineError("the probe touches nothing" if not away else "the probe touches to the end")
+        raise LineError("the probe touches nothing" if not away else "the probe touches to the end", PROBING)
     return None

@@ -37,7 +37,7 @@ def read_tools(path: Path | None) -> dict[int, Tool]:
             tool = Tool(round(words["T"]), words.get("D", 0.0), words.get("Z", 0.0))
             tools[tool.number] = tool
         elif words:
-            raise ExpandError(place, "a tool needs its number: T")
+            raise ExpandError(place, LineError("a tool needs its number: T"))
     return tools
 
 

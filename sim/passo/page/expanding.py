@@ -4,13 +4,15 @@
 import json
 import os
 import shutil
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 from passo.expand.expander import Options, expand_file
 from passo.expand.follow import follow
 from passo.expand.height_map import read_height_map
-from passo.expand.place import ExpandError, Place
+from passo.expand.output import PlainLine
+from passo.expand.place import ExpandError, Place, listed
 from passo.expand.tools import read_tools
 from passo.failure import BadInputError
 from passo.gcode import GcodeSettings
@@ -27,7 +29,7 @@ def expand(
     `files`: name and text of it and of those beside it, as JSON; `settings`: those of GcodeSettings; `tools`:
     a table; `begin`: place of a `struct passo_gcode` behind another program, or 0: the machine is at 0;
     `height_map`: one that probes touch, or that Z follows, or nothing. Of what cannot be expanded: what is
-    wrong.
+    wrong, and the lines of the rest.
     """
     said: list[str] = []
     os.chdir("/")
@@ -53,9 +55,12 @@ def expand(
         if found_map and follows:
             lines = follow(lines, found_map, options)
     except ExpandError as error:
-        return json.dumps({"said": said, "wrong": f"{told(error.place)}: {error.reason}"})
+        wrong = "\n".join(listed([f"{told(one.place)}: {one.reason}" for one in error.each]))
+        return json.dumps({"said": said, "wrong": wrong, **_plain(error.lines, told)})
     except BadInputError as error:
         return json.dumps({"said": said, "wrong": str(error)})
-    return json.dumps(
-        {"said": said, "lines": [line.text for line in lines], "places": [told(line.place) for line in lines]}
-    )
+    return json.dumps({"said": said, **_plain(lines, told)})
+
+
+def _plain(lines: Sequence[PlainLine], told: Callable[[Place], str]) -> dict[str, list[str]]:
+    return {"lines": [line.text for line in lines], "places": [told(line.place) for line in lines]}

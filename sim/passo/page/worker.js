@@ -78,39 +78,41 @@ class Core {
     }
 
     // Checks programs of these files one after the other, each from where the one before ends, on a machine (struct
-    // web_machine), expanded where they need that. Returns the texts of PRINT, the programs, and what ends this.
+    // web_machine), expanded where they need that. Returns the texts of PRINT, the programs, and what is wrong.
     read(files, playing, machine, tools, map) {
         this.said();
         new Float64Array(this.c.memory.buffer, this.c.machine(), machine.numbers.length).set(machine.numbers);
         this.c.reset();
-        const programs = [], said = [];
+        const programs = [], said = [], wrong = [];
         for (const { name, text, expands } of playing) {
             const own = expands ? this.python.expand(name, files, machine, tools, programs.length && this.c.gcode(), map) : { said: [], lines: null };
             said.push(...own.said);
-            if (own.wrong) return { said, programs, wrong: own.wrong };
+            if (own.wrong) wrong.push(...own.wrong.split("\n"));
+            if (own.wrong && !own.lines) return { said, programs, wrong };
             const whole = own.lines ? own.lines.join("\n") : text, lines = own.lines ?? text.split(/\r\n|\r|\n/);
-            if (files.length > 1 && !lines.some(line => Advice.bare(line))) return { said, programs, wrong: `${name}: the file has no G-code` };
+            if (files.length > 1 && !own.wrong && !lines.some(line => Advice.bare(line))) return { said, programs, wrong: [...wrong, `${name}: the file has no G-code`] };
             const at = n => own.places?.[n - 1] ?? (files.length > 1 ? `${name}:${n}` : `line ${n}`);
             const bytes = encoded(whole.endsWith("\n") ? whole : `${whole}\n`);
             this.put(bytes, this.c.room(bytes.length));
-            if (!this.c.add()) return { said, programs, wrong: "there are too many files" };
+            if (!this.c.add()) return { said, programs, wrong: [...wrong, "there are too many files"] };
             programs.push({ lines, at, kept: this.c.kept(programs.length) });
         }
-        return { said, programs, wrong: "" };
+        if (wrong.length && this.c.refused()) wrong.push(...this.refusals(programs, machine));
+        return { said, programs, wrong };
     }
 
     // The plain lines of one of several programs, where each is from, and the texts of PRINT; or what is wrong.
     expanded(name, files, machine, tools, map) {
         const before = files.slice(0, files.findIndex(file => file.name === name)).filter(file => file.plays);
         const { programs, wrong } = this.read(files, before, machine, tools, map);
-        return wrong ? { said: [], wrong } : this.python.expand(name, files, machine, tools, programs.length && this.c.gcode(), map);
+        return wrong.length ? { said: [], wrong: wrong.join("\n") } : this.python.expand(name, files, machine, tools, programs.length && this.c.gcode(), map);
     }
 
     // Plays G-code on a machine after reset. Returns what it said, what is wrong with it, and a motion or null.
     async play(files, machine, tools, map) {
         const { said, programs, wrong } = this.read(files, files.filter(file => file.plays), machine, tools, map);
-        const played = wrong ? { wrong: [wrong], motion: null } : await this.playRead(programs, machine);
-        const unread = wrong ? 0 : this.c.unread(), more = unread ? [`${unread} lines behind the end of the program are not read`] : [];
+        const played = wrong.length ? { wrong, motion: null } : await this.playRead(programs, machine);
+        const unread = wrong.length ? 0 : this.c.unread(), more = unread ? [`${unread} lines behind the end of the program are not read`] : [];
         return { ...played, text: said.length + more.length ? [...said, ...more, ...played.wrong].join("\n") : "" };
     }
 
