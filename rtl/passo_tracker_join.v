@@ -51,10 +51,11 @@ module passo_tracker_join (
   assign direction    = path_down ^ turns;
   assign owes         = some;
 
-  reg signed  [2:0] change;
+  wire       [1:0] events = {leaves, made};
+  reg signed [2:0] change;
 
   always @* begin
-    case ({leaves, made})
+    case (events)
       2'b00:   change = 3'sd0;
       2'b01:   change = made_down ? -3'sd1 : 3'sd1;
       2'b10:   change = owed[2] ? 3'sd1 : -3'sd1;

@@ -48,7 +48,7 @@ def test_coordinates_of_a_file_make_no_corner(name: str, heading: float) -> None
 
 @pytest.mark.parametrize("name", CORNERS)
 def test_the_axes_keep_their_limits_on_them(name: str) -> None:
-    """At the pins, but for what the points are off the straight; steps of less than a micrometre show it."""
+    """At the pins, but for what the points are off the straight; steps of less than a micrometer show it."""
     case = replace(CORNERS[name], machine="fine", heading=33.0, grid=INCH)
     measured = Measured()
     play(case, measured)
