@@ -241,7 +241,7 @@ def tells(source: Path) -> bool:
     return bool(TELLS.search(text) and called)
 
 
-@pytest.mark.parametrize("name", commands())
+@pytest.mark.parametrize("name", sorted(commands()))
 def test_every_command_says_what_is_left(name: str) -> None:
     """Or its parts do; those of passo are tested below."""
     source = commands()[name]
