@@ -52,7 +52,8 @@ def test_a_straight_that_is_cut_takes_as_long() -> None:
     assert 0.998 < half < 1.001 and most < 1.02
 
 
-SEEDS = (22, 164, 168, 190, 199, 207, 211, 231, 240, 302, 369, 382, 442, 609, 671, 885)
+SEEDS = (22, 164, 168, 190, 199, 207, 211, 231, 240, 302, 341, 369, 382, 442, 453, 498, 559, 609, 671, 885)
+HARDLY = 1e-9  # mm: a junction deviation, less than the targets' last bits
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -60,6 +61,15 @@ def test_a_straight_that_was_slower_or_faster_once(seed: int) -> None:
     """Paths that a planner which forgets what a straight is made of plans otherwise by a hundredth or more:
     it brakes at a cut, or passes a corner faster than its rounding permits."""
     assert ratio(seed) == pytest.approx(1, abs=0.003)
+
+
+@pytest.mark.parametrize("seed", [3, 7, 8, 9, 10])
+def test_hardly_rounded_a_straight_that_is_cut_takes_as_long(seed: int) -> None:
+    """Corners are slow then, and cuts are none of them."""
+    settings = replace(SETTINGS, junction_deviation=HARDLY)
+    whole, cut = (plan(lines, settings, KNOWN).seconds for lines in drawn(seed))
+    assert cut == pytest.approx(whole, rel=1e-3)
+    assert whole > plan(drawn(seed)[0], SETTINGS, KNOWN).seconds
 
 
 @pytest.mark.parametrize("tilt", [1e-4, -1e-4])
