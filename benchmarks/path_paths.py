@@ -74,7 +74,6 @@ class Case:
     look_ahead: int = 48
     polls: int = 1000  # per second
     heading: float = 0.0  # degrees
-    grid: float = 0.0  # mm: all coordinates are multiples of it, as in a file; 0: exact
 
     @property
     def settings(self) -> PathSettings:
@@ -97,16 +96,12 @@ class Case:
                 x += size * math.cos(math.radians(heading))
                 y += size * math.sin(math.radians(heading))
                 z += size * slope
-                lines.append((self.on_grid((x, y, z)), feed / 60 if feed else None))
+                lines.append(((x, y, z), feed / 60 if feed else None))
         return lines[:LINES_MAX]
-
-    def on_grid(self, place: tuple[float, ...]) -> tuple[float, ...]:
-        """The place that a file has."""
-        return tuple(round(part / self.grid) * self.grid for part in place) if self.grid else place
 
     def to_json(self) -> dict[str, Any]:
         """For a file of cases."""
-        return {key: value for key, value in asdict(self).items() if key != "grid" or value}
+        return asdict(self)
 
 
 def case_of(data: dict[str, Any]) -> Case:

@@ -478,7 +478,7 @@ def test_a_curve_leaves_each_axis_its_acceleration() -> None:
         axes = tuple(PathAxis(80, 300, log_uniform(rng, 500, 2000)) for _ in range(2))
         settings = PathSettings(axes, tolerance=0, junction_deviation=1)
         path = CheckedPath(settings)
-        radius, chords = log_uniform(rng, 4, 50), rng.randint(60, 200)  # each end is off the line past it
+        radius, chords = log_uniform(rng, 1, 50), rng.randint(60, 200)
         units = circle(path, radius, chords, None, 12)
         length = 2 * radius * math.sin(math.pi / chords)
         scale = Scale(path)

@@ -123,8 +123,7 @@ static bool merge(struct passo_path_planner *path, const struct passo_path_move 
 	if (!is_open(path, move))
 		return false;
 	const struct passo_path_merged merged = passo_path_off(path, move->target);
-	if (!path->open && ends_straight(path)
-	    && merged.off > path->substeps_per_mm >> 10) /* 2^-26 mm, in UQ.16 substeps */
+	if (ends_straight(path) && merged.off > path->substeps_per_mm >> 10) /* 2^-26 mm, in UQ.16 substeps */
 		return false;
 	if (path->open ? merged.off >= path->tolerance : !goes_on(path, &merged))
 		return false;

@@ -51,10 +51,7 @@ struct passo_path_settings {
 	struct passo_path_axis mixed; /* limits of each motor that moves two axes, 0: the larger one of these;
 	                                 steps_per_mm is not used: both have that of the motor */
 #endif
-	uint64_t acceleration; /* UQ32.32 mm/s^2 along the path; 0: only those of the axes */
-	/* With linear ramps the ends of lines are no corners where each axis is off a straight motion past
-	 * them by no more than an eighth of the junction deviation, or half of it where the feed changes, and
-	 * of 0.01 mm at most; the limits of the axes are those of that motion. */
+	uint64_t acceleration;       /* UQ32.32 mm/s^2 along the path; 0: only those of the axes */
 	uint64_t junction_deviation; /* UQ32.32 mm; 0: rest at every corner */
 	uint64_t tolerance;          /* UQ32.32 mm, see passo_path_tolerance(); 0: a twentieth of the junction
 	                                deviation */

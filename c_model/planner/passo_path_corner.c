@@ -149,7 +149,7 @@ uint64_t passo_path_corner_square(
 	return square;
 }
 
-void passo_path_find_turn(const struct passo_path_planner *path, const int32_t *from, const int32_t *to,
+bool passo_path_find_turn(const struct passo_path_planner *path, const int32_t *from, const int32_t *to,
     struct passo_path_corner *corner)
 {
 	corner->turn = 0;
@@ -159,6 +159,7 @@ void passo_path_find_turn(const struct passo_path_planner *path, const int32_t *
 		corner->change[axis] = change;
 		corner->turn += axis < path->machine.axes ? (uint64_t)change * change : 0;
 	}
+	return corner->turn >= 4;
 }
 
 static bool is_whole(const struct passo_path_corner *corner)
@@ -205,7 +206,6 @@ uint64_t passo_path_round(struct passo_path_planner *path, const struct passo_pa
 {
 	struct passo_path_rounding *rounding = &corner->rounding;
 
-	corner->arc = half_arc(path, corner->turn);
 	*rounding = rounding_of(corner->arc, meeting->before, meeting->behind);
 	span_lines(path, meeting, corner, item);
 	const uint64_t both = rounding->before + rounding->behind;
@@ -251,17 +251,18 @@ uint64_t passo_path_limit_corner(
 	struct passo_path_corner corner;
 
 	passo_path_restore_start(passo_path_item(path, path->added - 1), &path->at);
-	passo_path_find_turn(path, passo_path_ahead(path), unit, &corner);
-	if (passo_path_goes_on(path, item, unit, length, corner.turn)) {
+	if (!passo_path_find_turn(path, path->at.direction, unit, &corner)
+	    || passo_path_goes_on(path, corner.turn, length)) {
 		go_on(path, unit, item);
 		item->bend = PASSO_PATH_SQUARE_MAX;
 		passo_path_prolong(path, item, length);
 		return item->bend;
 	}
 	passo_path_end_straight(path);
+	corner.arc = half_arc(path, corner.turn);
 	const struct passo_path_meeting meeting = {
 	    .index = path->added,
-	    .from = passo_path_ahead(path),
+	    .from = path->at.direction,
 	    .to = unit,
 	    .before = passo_path_straight(path),
 	    .behind = length,
@@ -275,6 +276,6 @@ uint64_t passo_path_limit_corner(
 	};
 	const uint64_t square = passo_path_round(path, &meeting, &corner, item);
 
-	passo_path_begin(path, unit, length, &meeting, &corner);
+	passo_path_begin(path, length, &meeting, corner.arc);
 	return square;
 }

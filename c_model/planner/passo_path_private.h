@@ -324,9 +324,8 @@ struct passo_path_meeting {
 #endif
 };
 
-/* Finds the change of direction from one unit vector to another. */
-#define PASSO_PATH_NO_TURN 4u /* it goes straight on with less */
-void passo_path_find_turn(const struct passo_path_planner *path, const int32_t *from, const int32_t *to,
+/* Finds the change of direction from one unit vector to another; false: it goes straight on. */
+bool passo_path_find_turn(const struct passo_path_planner *path, const int32_t *from, const int32_t *to,
     struct passo_path_corner *corner);
 
 /* Highest square at a corner by its rounding, which bends the lines beside it. */
@@ -356,22 +355,16 @@ static inline void passo_path_prolong(
 	(void)path, (void)newest, (void)length;
 }
 
-static inline void passo_path_begin(struct passo_path_planner *path, const int32_t *unit, uint64_t length,
-    const struct passo_path_meeting *meeting, const struct passo_path_corner *corner)
+static inline void passo_path_begin(
+    struct passo_path_planner *path, uint64_t length, const struct passo_path_meeting *meeting, uint64_t arc)
 {
-	(void)path, (void)unit, (void)length, (void)meeting, (void)corner;
+	(void)path, (void)length, (void)meeting, (void)arc;
 }
 
-static inline const int32_t *passo_path_ahead(const struct passo_path_planner *path)
+static inline bool passo_path_goes_on(const struct passo_path_planner *path, uint64_t turn, uint64_t length)
 {
-	return path->at.direction;
-}
-
-static inline bool passo_path_goes_on(struct passo_path_planner *path, const struct passo_path_item *item,
-    const int32_t *unit, uint64_t length, uint64_t turn)
-{
-	(void)path, (void)item, (void)unit, (void)length;
-	return turn < PASSO_PATH_NO_TURN;
+	(void)path, (void)turn, (void)length;
+	return false;
 }
 #else
 /* Up to where a rounding covers the lines on one side of a corner, in halves, if it may reach so far; and
@@ -403,19 +396,11 @@ void passo_path_end_straight(struct passo_path_planner *path);
 void passo_path_prolong(struct passo_path_planner *path, struct passo_path_item *newest, uint64_t length);
 
 /* A new straight begins with the item that is being added, at a corner, or, where that is null, at rest. */
-void passo_path_begin(struct passo_path_planner *path, const int32_t *unit, uint64_t length,
-    const struct passo_path_meeting *meeting, const struct passo_path_corner *corner);
+void passo_path_begin(
+    struct passo_path_planner *path, uint64_t length, const struct passo_path_meeting *meeting, uint64_t arc);
 
-/* The direction of the straight that the last line ends. */
-static inline const int32_t *passo_path_ahead(const struct passo_path_planner *path)
-{
-	return passo_path_spans(path) ? path->at.mean : path->at.direction;
-}
-
-/* Whether the line that is being added goes straight on from the straight that the last one ends, with a turn
- * (UQ2.60, squared): it is a part of that then. */
-bool passo_path_goes_on(struct passo_path_planner *path, const struct passo_path_item *item,
-    const int32_t *unit, uint64_t length, uint64_t turn);
+/* Whether a turn (UQ2.60, squared) beside a line of a length is that of targets in 2^-32 mm alone. */
+bool passo_path_goes_on(const struct passo_path_planner *path, uint64_t turn, uint64_t length);
 #endif
 
 /* The path rests at the start of an item, if it is hardly faster there. */

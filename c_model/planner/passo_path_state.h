@@ -135,17 +135,12 @@ struct passo_path_place {
 #ifndef PASSO_WITHOUT_ROUNDING
 	/* The straight that the last line ends, of lines of several feeds, and the corner that it begins
 	 * with. */
-	uint64_t straight; /* its length, UQ32.16 substeps */
-	int32_t
-	    mean[PASSO_PATH_AXES_MAX]; /* from its start to its end, divided by its length, in rows, Q1.30; */
-	int32_t least[PASSO_PATH_AXES_MAX],
-	    most[PASSO_PATH_AXES_MAX];     /* all its ends are near it with these */
+	uint64_t straight;                 /* its length, UQ32.16 substeps */
 	uint32_t first;                    /* the item that it begins with */
 	bool cornered;                     /* it begins with a corner, before which there is: */
 	int32_t came[PASSO_PATH_AXES_MAX]; /* this unit vector */
 	uint64_t came_straight, came_last; /* a straight, and the line at its end */
 	uint64_t arc;                      /* what the corner can have of either */
-	uint64_t turn_known;               /* and its least turn so far, UQ2.60, squared */
 #endif
 	int32_t carry;        /* Q16: substeps that rounding has withheld from the lines so far */
 	uint32_t line_credit; /* clocks that the last lines have left, see passo_path_pace.c */

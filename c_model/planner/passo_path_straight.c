@@ -19,17 +19,6 @@
 #define FAR_PARTS 3u
 /* Less of a rounding in a line is none. */
 #define HARDLY 16u
-/* Of the junction deviation: by so much an axis may be off a straight where the feed changes. */
-#define OFF 2u
-/* Where it stays the same: no more than what rounding to 0.001 mm makes, so that a curve stays one. */
-#define SAME_OFF 8u
-/* Several axes, and both lines beside an end, hide no more of what it is off than this. */
-#define SEEN 8u
-/* Both of a hundredth of a millimeter at most: it is rounded coordinates that make no corner, not a shape. */
-#define OFF_PER_MM 100u
-/* As the straight may be off, so may what the corner at its start is rounded to: by this part of that it may
- * become sharper, of its turn, squared. */
-#define SHARPER 4u
 
 static struct passo_path_item *item_at(
     const struct passo_path_planner *path, const struct passo_path_meeting *meeting, uint32_t index)
@@ -77,13 +66,6 @@ static void bend_half(struct passo_path_planner *path, const struct passo_path_m
 	if (behind)
 		item->begun |= half > 0 ? 2u : 1u;
 	passo_path_bend(path, curvature, behind ? meeting->to : meeting->from, half, item);
-	/* a short line that is off the direction of its straight may have axes that hardly move in it */
-	for (uint32_t axis = 0; axis < passo_path_rows(path); axis++) {
-		const uint8_t others = (uint8_t)~(item->curve.slope[axis] > 0 ? 0u : 1u << axis);
-
-		item->curve.helps[half] &= others;
-		item->curve.hinders[half] &= others;
-	}
 	passo_path_set_fall(item);
 	changes(path, index);
 }
@@ -243,7 +225,7 @@ static void unsettle(struct passo_path_planner *path)
 static void round_start(
     struct passo_path_planner *path, uint64_t straight, struct passo_path_item *newest, uint64_t length)
 {
-	struct passo_path_place *at = &path->at;
+	const struct passo_path_place *at = &path->at;
 	const uint64_t known = path->rounded_at == at->first ? path->rounded : at->straight;
 	struct passo_path_corner corner;
 
@@ -254,7 +236,7 @@ static void round_start(
 	const struct passo_path_meeting meeting = {
 	    .index = at->first,
 	    .from = at->came,
-	    .to = at->mean,
+	    .to = at->direction,
 	    .before = at->came_straight,
 	    .behind = straight,
 	    .last = at->came_last,
@@ -264,12 +246,10 @@ static void round_start(
 	    .end = newest == NULL ? path->added - 1 : path->added,
 	};
 
-	passo_path_find_turn(path, at->came, at->mean, &corner);
-	if (corner.turn < PASSO_PATH_NO_TURN)
-		return;
+	passo_path_find_turn(path, at->came, at->direction, &corner);
+	corner.arc = at->arc;
 	first->rest = false;
 	first->bend = passo_path_round(path, &meeting, &corner, first);
-	at->arc = corner.arc;
 	for (uint32_t index = at->first - 1; index <= at->first + 1 && index < path->added; index++)
 		passo_path_limit(path, index);
 	passo_path_rest_if_slow(path, first);
@@ -278,73 +258,13 @@ static void round_start(
 	unsettle(path);
 }
 
-static uint64_t permitted(const struct passo_path_planner *path)
+bool passo_path_goes_on(const struct passo_path_planner *path, uint64_t turn, uint64_t length)
 {
-	return passo_path_smaller(path->deviation, ((uint64_t)path->substeps_per_mm << 16) / OFF_PER_MM);
-}
+	const uint64_t shorter = passo_path_smaller(length, path->at.length);
+	const uint64_t off =
+	    passo_mul_shift((uint64_t)passo_isqrt64(turn) << 8, shorter, PASSO_PATH_UNIT_BITS);
 
-/* By how much an axis may be off the straight at the start of an item, UQ32.16 substeps; a little is what the
- * last bits of targets in 2^-32 mm are. */
-static uint64_t may_be_off(const struct passo_path_planner *path, const struct passo_path_item *item)
-{
-	const struct passo_path_item *last = passo_path_item(path, path->added - 1);
-	const bool same = last->feed == item->feed && last->rapid == item->rapid;
-
-	return permitted(path) / (same ? SAME_OFF : OFF) + (path->substeps_per_mm >> 14); /* 2^-30 mm */
-}
-
-/* Each end p of the straight, at the length s of it, limits the direction m of the whole, from its start to
- * its end: it is off by no more than what it may be, |p - s m|. */
-static void limit_mean(struct passo_path_planner *path, uint64_t off)
-{
-	struct passo_path_place *at = &path->at;
-	const uint64_t part = passo_mul_div(off, PASSO_PATH_ONE, passo_path_larger(at->straight, 1));
-	const int32_t wide = (int32_t)passo_path_smaller(part + 2, PASSO_PATH_ONE - 1);
-
-	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		if (at->mean[axis] - wide > at->least[axis])
-			at->least[axis] = at->mean[axis] - wide;
-		if (at->mean[axis] + wide < at->most[axis])
-			at->most[axis] = at->mean[axis] + wide;
-	}
-}
-
-bool passo_path_goes_on(struct passo_path_planner *path, const struct passo_path_item *item,
-    const int32_t *unit, uint64_t length, uint64_t turn)
-{
-	struct passo_path_place *at = &path->at;
-	struct passo_path_corner corner;
-	int32_t mean[PASSO_AXES_MAX];
-
-	if (!passo_path_spans(path))
-		return turn < PASSO_PATH_NO_TURN;
-	const uint64_t off = may_be_off(path, item);
-	const uint64_t least = passo_mul_shift(
-	    passo_isqrt64(turn), passo_path_smaller(length, at->straight), PASSO_PATH_UNIT_BITS);
-	if (least > SEEN * off || turn > UINT64_C(2) << (2 * PASSO_PATH_UNIT_BITS)) /* or it goes back */
-		return false;
-	const int64_t share = (int64_t)passo_mul_div(length, PASSO_PATH_ONE, at->straight + length);
-
-	limit_mean(path, off);
-	for (uint32_t row = 0; row < passo_path_rows(path); row++) {
-		const int64_t change = (int64_t)unit[row] - at->mean[row];
-
-		mean[row] = (int32_t)(at->mean[row] + change * share / PASSO_PATH_ONE);
-		if (row < path->machine.axes && (mean[row] < at->least[row] || mean[row] > at->most[row]))
-			return false;
-	}
-	if (at->cornered) {
-		passo_path_find_turn(path, at->came, mean, &corner);
-		const uint64_t sharper = passo_mul_div(
-		    at->turn_known, permitted(path) / SHARPER, passo_path_larger(path->deviation, 1));
-
-		if (corner.turn > at->turn_known + sharper)
-			return false;
-		at->turn_known = passo_path_smaller(at->turn_known, corner.turn);
-	}
-	for (uint32_t row = 0; row < passo_path_rows(path); row++)
-		at->mean[row] = mean[row];
-	return true;
+	return passo_path_spans(path) && off <= path->substeps_per_mm >> 7; /* 2^-31 mm, in UQ.24 substeps */
 }
 
 void passo_path_end_straight(struct passo_path_planner *path)
@@ -359,26 +279,21 @@ void passo_path_prolong(struct passo_path_planner *path, struct passo_path_item 
 	path->at.straight += length;
 }
 
-void passo_path_begin(struct passo_path_planner *path, const int32_t *unit, uint64_t length,
-    const struct passo_path_meeting *meeting, const struct passo_path_corner *corner)
+void passo_path_begin(
+    struct passo_path_planner *path, uint64_t length, const struct passo_path_meeting *meeting, uint64_t arc)
 {
 	struct passo_path_place *at = &path->at;
 
 	at->first = path->added;
 	at->straight = length;
 	at->cornered = meeting != NULL;
-	for (uint32_t row = 0; row < passo_path_rows(path); row++) {
-		at->came[row] = at->mean[row];
-		at->mean[row] = unit[row];
-		at->least[row] = -INT32_MAX;
-		at->most[row] = INT32_MAX;
-	}
+	at->arc = arc;
 	if (meeting == NULL)
 		return;
-	at->arc = corner->arc;
-	at->turn_known = corner->turn;
 	at->came_straight = meeting->before;
 	at->came_last = meeting->last;
+	for (uint32_t row = 0; row < passo_path_rows(path); row++)
+		at->came[row] = meeting->from[row];
 	path->rounded_at = path->added;
 	path->rounded = length;
 }

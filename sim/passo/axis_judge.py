@@ -13,8 +13,7 @@ of the limit, `w = sqrt(8 e / a)`, and `j` likewise, to where it hides a hundred
 to where it hides a thousandth. Times are an eighth of the shortest window apart. `e` is
 
 * half a step, since steps are rounded; a place between two steps is between their places;
-* where the path has a corner within the window: by how much it may be rounded there, along the axis; and by
-  how much the points of a straight are off it;
+* where the path has a corner within the window: by how much it may be rounded there, along the axis;
 
 Where a step of the other direction left as soon as the pins allow, it may have been asked for earlier by as
 long as they take to change DIR, with those behind it: at these times the axis may be where it is so much
@@ -32,7 +31,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from passo.path import PathAxis, PathSettings
-from passo.path_rounding import Line, Rounded, rounded
+from passo.path_rounding import Line, rounded
 
 NAMES = ("speed", "acceleration", "jerk")
 BOUND = 1.03  # share of a limit that is a fault
@@ -101,39 +100,20 @@ class Marks:
         the next.
         """
         path = rounded(lines, settings)
-        directions = np.array([direction for direction, _ in settings.limits()])
-        near = path.points_off(directions)
+        own = path.points @ settings.motors.map(len(settings.axes)).T
+        places = np.round(own * settings.scales).astype(int)
         corners = path.kept[1:-1]
-        others = np.setdiff1d(np.flatnonzero(near.max(axis=1) > 0), path.kept)
-        none = cls.none(len(directions))
-        found = [
-            (np.concatenate(_passed(path, points, settings, clocks, positions)), np.concatenate([off, off]))
-            for points, off in (
-                (corners, path.off_along(directions) + near[corners]),
-                (others, near[others]),
-            )
-        ]
-        return none.with_more(found)
-
-
-def _passed(
-    path: Rounded,
-    points: np.ndarray,
-    settings: PathSettings,
-    clocks: Sequence[np.ndarray],
-    positions: Sequence[np.ndarray],
-) -> tuple[np.ndarray, np.ndarray]:
-    """Times (s) of the last step before each of these points of the path, and of the first one behind it."""
-    own = path.points @ settings.motors.map(len(settings.axes)).T
-    places = np.round(own * settings.scales).astype(int)
-    begin, end = np.zeros(len(points)), np.full(len(points), np.inf)
-    for motor, clock in enumerate(clocks):
-        time = clock / settings.clock_hz
-        wanted = np.cumsum(np.abs(np.diff(places[:, motor])))[points - 1]
-        done = _steps_until(places[points, motor], wanted, positions[motor])
-        begin = np.maximum(begin, np.concatenate([[0.0], time])[done])
-        end = np.minimum(end, np.append(time, np.inf)[done])
-    return begin, np.where(np.isinf(end), begin, end)
+        begin, end = np.zeros(len(path.corner)), np.full(len(path.corner), np.inf)
+        for motor, clock in enumerate(clocks):
+            time = clock / settings.clock_hz
+            wanted = np.cumsum(np.abs(np.diff(places[:, motor])))[corners - 1]
+            done = _steps_until(places[corners, motor], wanted, positions[motor])
+            begin = np.maximum(begin, np.concatenate([[0.0], time])[done])
+            end = np.minimum(end, np.append(time, np.inf)[done])
+        end = np.where(np.isinf(end), begin, end)
+        order = np.argsort(np.concatenate([begin, end]))
+        off = path.off_along(np.array([direction for direction, _ in settings.limits()]))
+        return cls(np.concatenate([begin, end])[order], np.concatenate([off, off])[order])
 
 
 def _steps_until(places: np.ndarray, wanted: np.ndarray, positions: np.ndarray) -> np.ndarray:

@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: MIT
 """The rounding that a path permits, from geometry alone.
 
-Points near the line past them are no corners: within an eighth of the junction deviation `d`, and within
-half of it where the feed changes, both of 0.01 mm at most; and within the tolerance of merging. A machine
-that goes along that line is off the points by as much. Any other corner turns the direction by `c`, the
-difference of two unit vectors. The arc that touches both lines and passes the corner at `d` has the
-radius `R = d s / (1 - s)`, `s` the sine of half the angle between the lines; while it turns it advances
-by `l = R |c|`. So the speed `v` at the corner is at most `v^2 = a l / |c|` of every axis, `c` and `a`
-those of the axis: at constant speed the velocity changes evenly over `l`, and the path is off the corner
-by `|c| l / 8`, no more than `d`.
+Points within a twentieth of the junction deviation `d` of the line past them, at the same feed on both
+sides, are no corners. Any other corner turns the direction by `c`, the difference of two unit vectors.
+The arc that touches both lines and passes the corner at `d` has the radius `R = d s / (1 - s)`, `s` the
+sine of half the angle between the lines; while it turns it advances by `l = R |c|`. So the speed `v` at
+the corner is at most `v^2 = a l / |c|` of every axis, `c` and `a` those of the axis: at constant speed
+the velocity changes evenly over `l`, and the path is off the corner by `|c| l / 8`, no more than `d`.
 
 Acceleration along the path comes on top. With it, the change of direction may take longer, as long as the
 path stays within `d` on either side of the lines: the direction turns over `p` before the corner and `q`
@@ -30,10 +28,7 @@ from passo.path import PathSettings
 Line = tuple[Sequence[float], float | None]  # target in mm, feed in mm/s or None
 
 STRAIGHT = 1e-7  # change of direction that is none
-SHARE = 1 / 20  # of the junction deviation: the tolerance of merging
-SAME_SHARE = 1 / 8  # by which a point may be off and still be no corner
-FEED_SHARE = 1 / 2  # the same where the feed changes
-MOST = 0.01  # mm: of which they are shares at most
+SHARE = 1 / 20  # of the junction deviation, by which a point may be off and still be no corner
 NEARLY = 1 - 1e-9
 SHORTEST = 1e-7  # mm: a line that is shorter is none
 
@@ -77,15 +72,6 @@ class Rounded:
         found = np.where(self.alone, self.deviation, found)
         return np.abs(self.turn @ directions.T) * (found / np.maximum(size, STRAIGHT))[:, None]
 
-    def points_off(self, directions: np.ndarray) -> np.ndarray:
-        """point x direction: by how much the points of the lines before and behind it are off these."""
-        found = np.zeros((len(self.points), len(directions)))
-        for first, last in zip(self.kept[:-1], self.kept[1:], strict=True):
-            if last > first + 1:
-                off = np.abs(_off_line(self.points[first : last + 1]) @ directions.T).max(axis=0)
-                found[first : last + 1] = np.maximum(found[first : last + 1], off)
-        return found
-
 
 def points_of(
     lines: Sequence[Line], axes: int, begin: Sequence[float] | None = None
@@ -100,35 +86,33 @@ def points_of(
     return points[kept], feed[np.array(kept[1:], int) - 1]
 
 
-def corners_of(points: np.ndarray, feed: np.ndarray, permitted: float) -> np.ndarray:
-    """The points that are corners, with both ends: those between are near the line past them."""
-    most = min(permitted, MOST)
-    off = np.full(len(points), max(most * SAME_SHARE, permitted * SHARE))
-    off[1:-1][feed[1:] != feed[:-1]] = most * FEED_SHARE
-    off = np.maximum(off, SHORTEST)
+def corners_of(points: np.ndarray, feed: np.ndarray, off: float) -> np.ndarray:
+    """The points that are corners, with both ends: those between are near the line past them.
+
+    Of lines of several feeds only a straight one is one, as with LinuxCNC's `G64 P Q`.
+    """
     kept, first, last = [0], 0, len(points) - 1
     while first < last:
         end = first + 1
-        while end < last and _is_line(points[first : end + 2], off[first + 1 : end + 1]):
+        while end < last and _is_line(points[first : end + 2], _most_off(feed[first : end + 1], off)):
             end += 1
         kept.append(end)
         first = end
     return np.array(kept)
 
 
-def _off_line(points: np.ndarray) -> np.ndarray:
-    """By how much points are off the line from the first to the last one, and how far along it they are."""
+def _most_off(feed: np.ndarray, off: float) -> float:
+    return off if (feed == feed[0]).all() else SHORTEST
+
+
+def _is_line(points: np.ndarray, off: float) -> bool:
     whole = points[-1] - points[0]
-    along = (points - points[0]) @ whole / np.maximum(whole @ whole, SHORTEST**2)
-    return points - points[0] - along[:, None] * whole
-
-
-def _is_line(points: np.ndarray, off: np.ndarray) -> bool:
-    sizes = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    forward = (np.diff(points, axis=0)[1:] * np.diff(points, axis=0)[:-1]).sum(axis=1) >= 0
-    whole = np.linalg.norm(points[-1] - points[0])
-    side = np.linalg.norm(_off_line(points), axis=1)[1:-1]
-    return bool((side <= off).all() and forward.all() and sizes.sum() - whole <= off.max())
+    length = np.linalg.norm(whole)
+    if length <= off:
+        return False
+    along = (points - points[0]) @ whole / length
+    side = np.linalg.norm(points - points[0] - along[:, None] * whole / length, axis=1)
+    return bool((side <= off).all() and (np.diff(along) > 0).all())
 
 
 def arc_length(turn: np.ndarray, junction_deviation: float) -> np.ndarray:
@@ -142,7 +126,7 @@ def rounded(lines: Sequence[Line], settings: PathSettings, begin: Sequence[float
     """The path and its roundings."""
     permitted = float(settings.junction_deviation)
     points, feed = points_of(lines, len(settings.axes), begin)
-    kept = corners_of(points, feed, permitted)
+    kept = corners_of(points, feed, permitted * SHARE)
     delta = np.diff(points[kept], axis=0)
     length = np.linalg.norm(delta, axis=1)
     unit = delta / length[:, None]

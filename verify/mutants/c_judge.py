@@ -35,7 +35,7 @@ TESTS = (
     *("test_driver_sessions", "test_driver_noise", "test_driver_square", "test_driver_frames"),
     *("test_driver_waits", "test_driver_pass", "test_endings", "test_follow", "test_gcode_lathe"),
     *("test_driver_promises", "test_driver_trackers", "test_path_parts_rare", "test_path_promises"),
-    *("test_path_pace", "test_path_cuts", "test_path_times", "test_path_straights", "test_plan_work"),
+    *("test_path_pace", "test_path_cuts", "test_path_times", "test_plan_work"),
 )
 RECORD = "test_plan_record"  # no judge: it sees that a plan has changed; for those that live in the end
 LONG = Path(__file__).with_name("c_long.py")
