@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from passo.console import each
 from passo.output import write_text
 from passo.path import PathSettings
 
@@ -65,7 +66,7 @@ def main() -> None:
     """Solve all of them."""
     found = {
         name: {"seconds": round(kept.solved(), 6), "case": kept.case.to_json()}
-        for name, kept in read().items()
+        for name, kept in each("paths solved", read().items())
     }
     rows = ",\n".join(f"  {json.dumps(name)}: {json.dumps(one)}" for name, one in found.items())
     write_text(KEPT, "{\n" + rows + "\n}\n")

@@ -291,10 +291,10 @@ def main() -> None:
     from passo.plot import STYLE, save
 
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("use", choices=USES)
+    parser.add_argument("use", choices=USES, nargs="?", default="gantry", help="default: gantry")
     parser.add_argument("--picture", type=Path, help="draw it into this file")
     arguments = parser.parse_args()
-    with plt.rc_context(STYLE):
+    with plt.rc_context(STYLE):  # type: ignore[arg-type]
         figure, panels = plt.subplots(2, 1, figsize=(9, 6), height_ratios=[2, 1], layout="constrained")
         print(USES[arguments.use](panels))
         if arguments.picture:

@@ -122,7 +122,7 @@ def demo() -> bool:
     results = {}
     with ProcessPoolExecutor() as pool:
         _build_all(pool)
-        long = [*LONG, *(name for name in ALL if name not in LONG)]
+        long = sorted(ALL, key=lambda name: LONG.index(name) if name in LONG else len(LONG))
         waiting = {pool.submit(_run, name): name for name in long}
         with progress("examples", len(waiting)) as report:
             for count, done in enumerate(as_completed(waiting), 1):

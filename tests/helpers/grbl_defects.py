@@ -13,12 +13,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from passo.console import each
+from passo.failure import BuildError
 from passo.planted import plant
 from passo.toolchain import BUILD_VARIABLE, paths
 
-FOLDERS = ("rtl", "c_model", "sim", "spec", "stm32_bridge", "tests", "examples")
+FOLDERS = ("rtl", "c_model", "sim", "spec", "stm32_bridge", "linux", "tests", "examples")
 LEFT_OUT = shutil.ignore_patterns("__pycache__", "*.pyc")
 PASSED, FAILED = 0, 1  # exit status of pytest
+NOT_BUILT = -1  # no test has seen it
 
 
 @dataclass(frozen=True)
@@ -53,7 +55,7 @@ class Copy:
                 shutil.copytree(library, self.root / "build" / "lib" / library.name)
 
     def status(self, test: str) -> int:
-        """Run a test in the copy; the exit status of pytest."""
+        """Run a test in the copy; the exit status of pytest, or NOT_BUILT."""
         packages = [self.root, self.root / "sim", self.root / "stm32_bridge"]
         environment = {
             **os.environ,
@@ -61,7 +63,8 @@ class Copy:
             BUILD_VARIABLE: str(self.root / "build"),
         }
         command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", f"tests/{test}"]
-        return subprocess.run(command, cwd=self.root, env=environment, capture_output=True).returncode
+        ran = subprocess.run(command, cwd=self.root, env=environment, capture_output=True)
+        return NOT_BUILT if BuildError.__name__.encode() in ran.stdout else ran.returncode
 
     def catches(self, defect: Defect) -> bool:
         """Whether the test of a planted defect fails."""

@@ -14,6 +14,7 @@ const RUNNING = 8 * LISTS;
 const DONE = 0, GOES_ON = 1, SLOW = -2;
 const SLICE = 40, TURNS = 16;  // ms between two looks at messages; turns of the main loop in one call
 const LINE_MAX = 4000;  // bytes
+const SHOWN = 20;  // bad lines that are reported
 const SEVERAL = Array.from({ length: AXES }, (_, n) => ({ name: `${n}`, per_step: 1 }));
 
 let canceled = false;
@@ -61,20 +62,23 @@ class Core {
         return status;
     }
 
-    // What is wrong with the lines of programs, a sentence each.
-    refusals(programs, machine) {
-        const count = this.c.refused(), told = this.said().split("\n").filter(Boolean), more = count - told.length;
+    // What is wrong with the lines of programs, a sentence each, behind `others`: pairs of a program's number and a
+    // sentence.
+    refusals(programs, machine, others = []) {
+        const count = this.c.refused() + others.length, told = this.said().split("\n").filter(Boolean);
         const advice = new Advice(this.rules, machine, line => {
             const bytes = encoded(line);
             this.put(bytes, this.c.room(bytes.length));
             return this.c.tries();
         });
-        const wrong = told.map(line => {
+        const refused = told.map(line => {
             const [, file, number, error, code] = /^(\d+):(\d+): ((?:error:(\d+))?.*)/.exec(line), program = programs[file];
             const text = code ? advice.explain(Number(code), error, program.lines[number - 1]) : advice.noProbe(error, program.lines[number - 1]);
-            return `${program.at(Number(number))}: ${text}`;
+            return [Number(file), `${program.at(Number(number))}: ${text}`];
         });
-        return more > 0 ? [...wrong, `and ${more} more lines`] : wrong;
+        const shown = [...others, ...refused].sort(([a], [b]) => a - b).slice(0, SHOWN).map(([, text]) => text);
+        const more = count - shown.length;
+        return more > 0 ? [...shown, `and ${more} more lines`] : shown;
     }
 
     // Checks programs of these files one after the other, each from where the one before ends, on a machine (struct
@@ -83,22 +87,21 @@ class Core {
         this.said();
         new Float64Array(this.c.memory.buffer, this.c.machine(), machine.numbers.length).set(machine.numbers);
         this.c.reset();
-        const programs = [], said = [], wrong = [];
+        const programs = [], said = [], wrong = [], texts = () => wrong.map(([, text]) => text);
         for (const { name, text, expands } of playing) {
             const own = expands ? this.python.expand(name, files, machine, tools, programs.length && this.c.gcode(), map) : { said: [], lines: null };
             said.push(...own.said);
-            if (own.wrong) wrong.push(...own.wrong.split("\n"));
-            if (own.wrong && !own.lines) return { said, programs, wrong };
+            if (own.wrong) wrong.push(...own.wrong.split("\n").map(sentence => [programs.length, sentence]));
+            if (own.wrong && !own.lines) return { said, programs, wrong: texts() };
             const whole = own.lines ? own.lines.join("\n") : text, lines = own.lines ?? text.split(/\r\n|\r|\n/);
-            if (files.length > 1 && !own.wrong && !lines.some(line => Advice.bare(line))) return { said, programs, wrong: [...wrong, `${name}: the file has no G-code`] };
+            if (files.length > 1 && !own.wrong && !lines.some(line => Advice.bare(line))) return { said, programs, wrong: [...texts(), `${name}: the file has no G-code`] };
             const at = n => own.places?.[n - 1] ?? (files.length > 1 ? `${name}:${n}` : `line ${n}`);
             const bytes = encoded(whole.endsWith("\n") ? whole : `${whole}\n`);
             this.put(bytes, this.c.room(bytes.length));
-            if (!this.c.add()) return { said, programs, wrong: [...wrong, "there are too many files"] };
+            if (!this.c.add()) return { said, programs, wrong: [...texts(), "there are too many files"] };
             programs.push({ lines, at, kept: this.c.kept(programs.length) });
         }
-        if (wrong.length && this.c.refused()) wrong.push(...this.refusals(programs, machine));
-        return { said, programs, wrong };
+        return { said, programs, wrong: wrong.length ? this.refusals(programs, machine, wrong) : [] };
     }
 
     // The plain lines of one of several programs, where each is from, and the texts of PRINT; or what is wrong.
