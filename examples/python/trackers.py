@@ -12,12 +12,13 @@ import argparse
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from passo.build import Parameters
-from passo.driver import Driver
+from passo.driver import Driver, new_track
 from passo.engine import model_engine, moves_of
 from passo.machine import Machine, Switch
 from passo.moves import PinTiming
@@ -56,8 +57,7 @@ class Host:
         self.tracks = []
         for axis in range(axes):
             self.driver.configure_axis(axis, PinTiming(20, 20, 20, 20))
-            fields = {"axis": axis, "top_speed": speed * Q32, "acceleration": acceleration * Q32}
-            self.tracks.append(ffi().new("struct passo_track *", fields))
+            self.tracks.append(new_track(axis, 0, Fraction(speed), Fraction(acceleration)))
             self.driver.call("configure_tracker", self.tracks[-1])
 
     def move(self, steps: list[int], speed: int) -> None:
@@ -69,12 +69,6 @@ class Host:
     def track(self, axis: int, target: float) -> None:
         """Send a tracker to a target, in steps."""
         self.driver.call("track_to", self.tracks[axis], round(target))
-
-    def tracker(self, axis: int) -> Any:
-        """The `struct passo_track_reading`."""
-        reading = ffi().new("struct passo_track_reading *")
-        self.driver.call("read_tracker", axis, reading)
-        return reading
 
     def until(self, is_done: Callable[[], bool], look: Callable[[int], None]) -> None:
         """Look a thousand times per second, until it is done."""
@@ -137,7 +131,7 @@ class Motor:
 
     def look(self, is_active: bool) -> None:
         """A millisecond or two later."""
-        reading = self.host.tracker(self.axis)
+        reading = self.host.driver.tracker(self.axis)
         if self.phase == "seek" and is_active:
             self.phase, self.target = "rest", reading.position
             self.host.driver.call("untrack", self.axis)
@@ -153,7 +147,7 @@ class Motor:
     @property
     def is_done(self) -> bool:
         """Off its switch, at rest."""
-        return self.phase == "off" and bool(self.host.tracker(self.axis).at_target)
+        return self.phase == "off" and bool(self.host.driver.tracker(self.axis).at_target)
 
 
 def gantry() -> Result:

@@ -2,11 +2,12 @@
 """Python binding of the driver (stm32_bridge/driver/passo.h): the same C code as on a microcontroller."""
 
 from collections.abc import Iterable
+from fractions import Fraction
 from typing import Any
 
 from passo.build import Parameters
 from passo.link import MICROSECONDS, Hardware, LinkError, error_name, error_text
-from passo.moves import Move, PinTiming
+from passo.moves import Move, PinTiming, q32
 from passo.native import ffi, planner
 from passo.plan import struct_of
 from passo.registers import Cause, State
@@ -18,6 +19,12 @@ class DriverError(LinkError):
     def __init__(self, call: str, error: int, text: str = ""):
         super().__init__("", error)
         self.args = (f"{call}: {self.name}: {text or error_text(error)}",)
+
+
+def new_track(axis: int, backlash: int, speed: Fraction, acceleration: Fraction) -> Any:
+    """A `struct passo_track`; in steps, steps/s, steps/s^2."""
+    fields = {"top_speed": q32(speed), "acceleration": q32(acceleration)}
+    return ffi().new("struct passo_track *", {"axis": axis, "backlash": backlash, **fields})
 
 
 class Source:
@@ -163,6 +170,12 @@ class Driver:
     def counters(self) -> Any:
         """The `struct passo_counters`."""
         return self.host.counters
+
+    def tracker(self, axis: int) -> Any:
+        """The `struct passo_track_reading`."""
+        reading = ffi().new("struct passo_track_reading *")
+        self.call("read_tracker", axis, reading)
+        return reading
 
     def positions(self) -> list[int]:
         """Steps made by each axis, all sampled at the same time."""

@@ -201,6 +201,10 @@ class MachineFile:
             for motor in self.motors_of(number)
         }
 
+    def backlash(self, motor: int) -> int:
+        """Steps that the tracker of a motor takes up; 0: none."""
+        return self.trackers[motor][0] if motor in self.trackers else 0
+
     def motors_of(self, axis: int) -> list[int]:
         """The motors that an axis is named after: its own, and those behind the axes."""
         rows = self.settings.motors.map(len(self.ends))

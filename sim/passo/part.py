@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from passo.build import Parameters
-from passo.driver import Driver, DriverError
+from passo.driver import Driver, DriverError, new_track
 from passo.engine import Engine
 from passo.expand.expander import Options, expand_file, needs_expanding
 from passo.expand.height_map import HeightMap
@@ -23,7 +23,6 @@ from passo.failure import BadInputError
 from passo.gcode import NANOMETERS, GcodeError, has_words, lines
 from passo.host_loop import HostLoop
 from passo.machine_file import MachineFile
-from passo.moves import q32
 from passo.native import ffi
 from passo.pair_engine import PairEngine
 from passo.path import LOOK_AHEAD
@@ -149,7 +148,7 @@ class Played:
                 found.append(
                     f"motor {name} made {made} steps and counted {self.end[motor]}, wanted are {exact:g}"
                 )
-            if taken_up not in (0, -self.machine.trackers.get(motor, (0,))[0]):
+            if taken_up not in (0, -self.machine.backlash(motor)):
                 name = self.machine.motors[motor]
                 found.append(f"motor {name}: its tracker ends at {taken_up}, neither 0 nor the backlash")
         return found
@@ -306,9 +305,8 @@ def configure(driver: Driver, machine: MachineFile, **fields: Any) -> None:
         _, limit = machine.encoders[motor]
         config = {"ratio": ratio, "limit": limit, "stop": driver.lib.PASSO_FOLLOWING_SOFT}
         driver.call("configure_encoder", motor, ffi().new("struct passo_encoder_config *", config))
-    for motor, (backlash, speed, acceleration) in machine.trackers.items():
-        limits = {"top_speed": q32(speed), "acceleration": q32(acceleration)}
-        track = ffi().new("struct passo_track *", limits | {"axis": motor, "backlash": backlash})
+    for motor, limits in machine.trackers.items():
+        track = new_track(motor, *limits)
         driver.call("configure_tracker", track)
         driver.call("track_to", track, 0)
 
@@ -392,9 +390,8 @@ def _taken_up(driver: Driver, machine: MachineFile, loop: HostLoop) -> dict[int,
     """Steps of the trackers, once they rest."""
     found = {}
     for motor in machine.trackers:
-        reading = ffi().new("struct passo_track_reading *")
         for _ in range(LOOPS_PER_SECOND):
-            driver.call("read_tracker", motor, reading)
+            reading = driver.tracker(motor)
             if not reading.moves:
                 break
             loop.run(machine.clock_hz // LOOPS_PER_SECOND)

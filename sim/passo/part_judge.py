@@ -86,7 +86,7 @@ def beside(played: Played, alone: Played) -> list[str]:
     if played.seconds != alone.seconds:
         found.append(f"the path took {played.seconds:.9f} s, without backlash {alone.seconds:.9f} s")
     for motor, (clocks, places) in enumerate(zip(played.clocks, played.positions, strict=True)):
-        backlash = played.machine.trackers.get(motor, (0,))[0]
+        backlash = played.machine.backlash(motor)
         at = np.union1d(clocks, alone.clocks[motor])
         off = _places(clocks, places, at) - _places(alone.clocks[motor], alone.positions[motor], at)
         if off.min(initial=0) < -backlash - WAITS or off.max(initial=0) > WAITS:

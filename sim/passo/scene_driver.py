@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from passo import registers as r
-from passo.driver import Driver, DriverError
+from passo.driver import Driver, DriverError, new_track
 from passo.link import error_name, error_text
 from passo.move_forms import USER_BANK, MachineEncoder, MachineTrack, MoveHome, MoveProbe, MoveThread
 from passo.moves import MoveFile, Task, q32
@@ -125,12 +125,6 @@ class SceneDriver(Driver):
             both[row, :axes] = np.array(words[first : first + axes], np.uint32).view(np.int32)
         return clock, both[0], both[1]
 
-    def tracker(self, axis: int) -> Any:
-        """The `struct passo_track_reading`."""
-        reading = ffi().new("struct passo_track_reading *")
-        self.call("read_tracker", axis, reading)
-        return reading
-
     def tracker_positions(self) -> list[int]:
         """Steps of the trackers of 8 axes."""
         words = self.read(r.CHANNEL_TRACKER_POSITION_BASE, r.CHANNEL_TRACKER_POSITION_COUNT)
@@ -158,13 +152,7 @@ class SceneDriver(Driver):
 def track_of(track: MachineTrack) -> Any:
     """The `struct passo_track`."""
     assert track.speed and track.acceleration and track.backlash
-    fields = {
-        "axis": track.axis,
-        "backlash": int(track.backlash.value),
-        "top_speed": q32(track.speed),
-        "acceleration": q32(track.acceleration),
-    }
-    return ffi().new("struct passo_track *", fields)
+    return new_track(track.axis, int(track.backlash.value), track.speed, track.acceleration)
 
 
 def _encoder_config(encoder: MachineEncoder) -> Any:

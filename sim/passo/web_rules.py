@@ -14,6 +14,7 @@ from passo.drives import drives
 from passo.expand import refusals
 from passo.expand.expander import NEEDS
 from passo.expand.flow import FLOW
+from passo.expand.place import MOST
 from passo.gcode import AXIS_LETTERS
 from passo.grbl_setup import SPINDLE_TICKS, TICKS_PER_COUNT
 from passo.machine_file import AxisEnds, Spindle, Switches
@@ -104,6 +105,7 @@ def _gcode() -> dict[str, Any]:
         "unread": sorted(refusals.UNREAD),
         "no_probe": refusals.NO_PROBE,
         "good": refusals.GOOD,
+        "most": MOST,
         "expanded": (f"^{FLOW.pattern}", NEEDS.pattern),
     }
 

@@ -14,7 +14,6 @@ const RUNNING = 8 * LISTS;
 const DONE = 0, GOES_ON = 1, SLOW = -2;
 const SLICE = 40, TURNS = 16;  // ms between two looks at messages; turns of the main loop in one call
 const LINE_MAX = 4000;  // bytes
-const SHOWN = 20;  // bad lines that are reported
 const SEVERAL = Array.from({ length: AXES }, (_, n) => ({ name: `${n}`, per_step: 1 }));
 
 let canceled = false;
@@ -76,7 +75,7 @@ class Core {
             const text = code ? advice.explain(Number(code), error, program.lines[number - 1]) : advice.noProbe(error, program.lines[number - 1]);
             return [Number(file), `${program.at(Number(number))}: ${text}`];
         });
-        const shown = [...others, ...refused].sort(([a], [b]) => a - b).slice(0, SHOWN).map(([, text]) => text);
+        const shown = [...others, ...refused].sort(([a], [b]) => a - b).slice(0, this.rules.most).map(([, text]) => text);
         const more = count - shown.length;
         return more > 0 ? [...shown, `and ${more} more lines`] : shown;
     }
