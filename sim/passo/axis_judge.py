@@ -265,9 +265,9 @@ class Most:
             return found
         first, last = np.searchsorted(self.time, begin), np.searchsorted(self.time, end, "right")
         level = np.log2(np.maximum(last - first, 1)).astype(int)
-        for k in np.unique(level):
-            chosen = (level == k) & (last > first)
-            one, other = first[chosen], last[chosen] - (1 << int(k))
+        for k in range(level.min(initial=0), level.max(initial=0) + 1):
+            chosen = np.flatnonzero((level == k) & (last > first))
+            one, other = first[chosen], last[chosen] - (1 << k)
             found[chosen] = np.maximum(self.table[k][one], self.table[k][other])
         return found
 

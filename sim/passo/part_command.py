@@ -22,7 +22,6 @@ from passo.machine_file import MachineFile, read_machine
 from passo.output import empty_folder, write_json
 from passo.part import Lines, Part, Played, core_of, plan_part, play_part, read_part
 from passo.part_judge import beside, greatest, shares_of
-from passo.part_page import write_part_page
 from passo.path import LOOK_AHEAD
 from passo.report import write_rows
 from passo.run import open_engine
@@ -125,7 +124,9 @@ def play_to(
         write_view(out, parameters, machine.clock_hz, {0: len(machine.motors)}, played.origin)
     alone = _alone(part, machine, asked.look_ahead) if machine.trackers and not played.canceled else played
     judged = [] if played.canceled else shares_of(alone)  # it does not come to rest
-    found = played.problems() + faults(judged) + beside(played, alone)
+    found = played.problems() + faults(judged)
+    if alone is not played:
+        found += beside(played, alone)
     summary = _summary(part, machine, played, engine, judged, found)
     summary |= {"tools": course.tools(), "levels": course.levels()}
     write_pulses(played, out / PULSES)
@@ -135,6 +136,8 @@ def play_to(
 
         plot_part(played, out / PICTURE)
     if asked.report:
+        from passo.part_page import write_part_page
+
         write_part_page(played, summary, out / PAGE)
     return played, judged, summary
 

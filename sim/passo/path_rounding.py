@@ -80,8 +80,9 @@ def points_of(
     points = np.array([list(begin or [0.0] * axes), *(list(target) for target, _ in lines)], float)
     feed = np.array([np.inf if feed is None else feed for _, feed in lines], float)
     kept = [0]
+    far = (np.abs(np.diff(points, axis=0)) > SHORTEST).any(axis=1)  # from the point before
     for i in range(1, len(points)):
-        if np.abs(points[i] - points[kept[-1]]).max() > SHORTEST:
+        if far[i - 1] if kept[-1] == i - 1 else np.abs(points[i] - points[kept[-1]]).max() > SHORTEST:
             kept.append(i)
     return points[kept], feed[np.array(kept[1:], int) - 1]
 
@@ -92,9 +93,12 @@ def corners_of(points: np.ndarray, feed: np.ndarray, off: float) -> np.ndarray:
     Of lines of several feeds only a straight one is one, as with LinuxCNC's `G64 P Q`.
     """
     kept, first, last = [0], 0, len(points) - 1
+    begins = _begin_lines(points, np.where(feed[1:] == feed[:-1], off, SHORTEST))
     while first < last:
         end = first + 1
-        while end < last and _is_line(points[first : end + 2], _most_off(feed[first : end + 1], off)):
+        while end < last and begins[first]:
+            if not _is_line(points[first : end + 2], _most_off(feed[first : end + 1], off)):
+                break
             end += 1
         kept.append(end)
         first = end
@@ -103,6 +107,14 @@ def corners_of(points: np.ndarray, feed: np.ndarray, off: float) -> np.ndarray:
 
 def _most_off(feed: np.ndarray, off: float) -> float:
     return off if (feed == feed[0]).all() else SHORTEST
+
+
+def _begin_lines(points: np.ndarray, off: np.ndarray) -> np.ndarray:
+    """Of each point but the last two: whether it and the two behind it may be of one line."""
+    whole, first = points[2:] - points[:-2], points[1:-1] - points[:-2]
+    square = np.sum(whole**2, axis=1)
+    side = first - (np.sum(first * whole, axis=1) / np.maximum(square, STRAIGHT**2))[:, None] * whole
+    return np.linalg.norm(side, axis=1) <= off * 2
 
 
 def _is_line(points: np.ndarray, off: float) -> bool:
