@@ -57,6 +57,10 @@ static inline enum passo_error passo_driver_take_off_trackers(
 }
 #else
 enum passo_error passo_driver_take_off_trackers(struct passo *passo, uint32_t *positions, bool once);
+/* Before a task: trackers that follow a target now go on after the stops of its trigger. */
+enum passo_error passo_driver_note_trackers(struct passo *passo);
+/* The path has ended, and has moved these axes: those at a limit take up their backlash as all others. */
+void passo_driver_unpark(struct passo *passo, uint8_t moved);
 #endif
 /* A position of the core as the program counts it. */
 int32_t passo_driver_offset(const struct passo *passo, unsigned axis, int32_t position);
