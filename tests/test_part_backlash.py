@@ -142,7 +142,7 @@ def test_others_refuse_it(tmp_path: Path, command: list[str], capsys: pytest.Cap
     """The firmware, which does not configure trackers, must not turn with the play of such a machine."""
     machine, _ = write(tmp_path)
     assert cli.main([*command, str(machine)]) == 2
-    assert "axis 1: backlash: only passo run with G-code takes backlash up" in capsys.readouterr().err
+    assert "axis 1: backlash: only passo run, make and console --grbl take backlash up" in capsys.readouterr().err
 
 
 def test_parts_of_the_core(tmp_path: Path) -> None:

@@ -359,9 +359,12 @@ static bool shares_motors(const struct passo_grbl *grbl, uint8_t axis)
 #ifdef PASSO_CARTESIAN
 	(void)grbl, (void)axis;
 #else
-	for (unsigned other = 0; other < grbl->path.machine.axes; other++) {
-		if (other != axis
-		    && (passo_grbl_motors_of(grbl, other) & passo_grbl_motors_of(grbl, axis)) != 0)
+	const struct passo_motors *motors = &grbl->path.motors;
+
+	for (unsigned motor = 0; motor < motors->count; motor++) {
+		const unsigned axes = (unsigned)motors->plus[motor] | motors->minus[motor];
+
+		if ((axes >> axis & 1u) != 0u && (axes & (axes - 1u)) != 0u)
 			return true;
 	}
 #endif
@@ -380,7 +383,7 @@ static enum passo_gcode_error check_track(
 	const uint64_t take_up = passo_grbl_take_up_speed(track);
 	const uint64_t swift = 2u * take_up < pins ? pins - take_up : pins / 2u;
 	const uint64_t top = swift < ticks ? swift : ticks - 1u;
-	const uint64_t turn = passo_mul_div(passo_mul_div(hz, ONE, both), 2u * hz, both);
+	const uint64_t turn = passo_mul_div(passo_mul_div(hz, ONE, both), hz, 2u * both);
 	const uint64_t quick = passo_mul_div(track->top_speed, ticks, ONE);
 	const uint64_t least = passo_mul_div(ticks, ticks, ONE) / ONE + ticks / ONE + 2u;
 
@@ -418,7 +421,7 @@ static enum passo_gcode_error check_backlash(struct passo_grbl *grbl, struct tim
 	return error;
 }
 
-/* Those that have taken up backlash go to their place without. */
+/* Those that have taken up backlash go to their place without, within the limits that they have. */
 static enum passo_error apply_backlash(struct passo_grbl *grbl)
 {
 	struct passo *passo = grbl->player->feed->passo;
@@ -430,9 +433,10 @@ static enum passo_error apply_backlash(struct passo_grbl *grbl)
 		struct passo_track track = passo_grbl_track(grbl, (uint8_t)passo_grbl_axis_of(grbl, motor));
 
 		track.axis = motor;
-		if (track.backlash == 0 && ((uint32_t)passo->tracked >> motor & 1u) == 0u)
-			continue;
-		error = aims ? passo_track_to(passo, &track, 0) : passo_configure_tracker(passo, &track);
+		if (track.backlash > 0 && !aims)
+			error = passo_configure_tracker(passo, &track);
+		else if (aims && (track.backlash > 0 || ((uint32_t)passo->tracked >> motor & 1u) != 0u))
+			error = passo_track_to(passo, &track, 0);
 	}
 	if (error == PASSO_OK)
 		error = passo_track_again(passo);
