@@ -269,7 +269,7 @@ def place(board: GrblBoard) -> int:
 
 
 def test_backlash_is_taken_up(image: tuple[str, ...], elf: Path) -> None:
-    """With settings that outlast a reset; the image with the console and a core without trackers refuse it."""
+    """With settings that outlast a reset; the other image, and a core without trackers, refuse it."""
     with model_engine(replace(PARAMETERS, trackers=1), HZ) as engine:
         board = GrblBoard(engine, elf)
         if image == BOTH_IMAGE:

@@ -143,11 +143,12 @@ def plain_of(folder: Path) -> MachineFile:
 
 
 def test_values_and_their_bounds(opens: Opens, tmp_path: Path) -> None:
-    """What is too much is told with the most that is not; that is taken."""
+    """What is too much is refused with the most that is not; that is taken."""
     session = opens()
     assert {"$160=0.100", "$162=0.100", "$810=20000.000"} <= set(session.line("$$").splitlines())
     for text, told in (
-        ("$160=-1", "error:4"), ("$163=1", "error:3"), ("$160=1000.1", "error:3"), ("$810=1000001", "error:3"),
+        ("$160=-1", "error:4"), ("$163=1", "error:3"), ("$160=1000.1", "error:3"),
+        ("$810=1000001", "error:3"),
         ("$160=0.001", "[MSG:$160 is 1 to 65535 steps]\nerror:3"),
         ("$161=900", "[MSG:$161 is 1 to 65535 steps]\nerror:3"),
     ):  # fmt: skip
@@ -174,7 +175,7 @@ def test_values_and_their_bounds(opens: Opens, tmp_path: Path) -> None:
     assert session.line("G1 X1 F100") == "ok" and session.line("$160=0.05") == "error:8"
 
 
-def test_a_core_without_trackers_is_told(opens: Opens, tmp_path: Path) -> None:
+def test_a_core_without_trackers_refuses_it(opens: Opens, tmp_path: Path) -> None:
     """Backlash is refused, and 0 is not."""
     session = opens(machine_of(tmp_path, ""))
     before = session.line("$$")
@@ -272,7 +273,7 @@ def homed(session: Session) -> list[int]:
 def test_home_is_where_it_is_without_backlash(
     opens: Opens, tmp_path: Path, take_up: int, places: str
 ) -> None:
-    """Wherever it begins: the edge is the same place of the table, and of its screw while that pushes it there.
+    """Wherever it begins: the edge is the same place of the table.
 
     X approaches its switch downward, so its screw is lower there by the play; Y and Z leave theirs downward.
     """
@@ -295,7 +296,7 @@ def test_home_is_where_it_is_without_backlash(
 
 
 def test_home_ends_at_the_same_place_again(opens: Opens, tmp_path: Path) -> None:
-    """The edge comes at any moment of a slow take-up, of the first approach and of the one from the back-off."""
+    """The edge comes at any moment of a slow take-up."""
     rng = random.Random(f"homes {SEED}")
     session = opens(machine_of(tmp_path, BACKLASH.format(take_up=40)))
     first = homed(session)
@@ -329,7 +330,7 @@ def jog(rng: random.Random) -> str:
 
 
 def test_whatever_interrupts_a_take_up_no_step_is_lost(opens: Opens, tmp_path: Path) -> None:
-    """Jogs that are canceled, holds, resets: motors, trackers and path agree at each rest, home is where it was."""
+    """Canceled jogs, holds, resets: motors, trackers and path agree at rest; home is where it was."""
     rng = random.Random(f"backlash {SEED}")
     session = opens(machine_of(tmp_path, BACKLASH.format(take_up=SLOW)))
     home = homed(session)

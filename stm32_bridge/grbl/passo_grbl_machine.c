@@ -318,8 +318,8 @@ struct passo_track passo_grbl_track(const struct passo_grbl *grbl, uint8_t axis)
 	return (struct passo_track){.axis = axis,
 	    .backlash = (uint16_t)backlash_steps(grbl, axis),
 	    .top_speed = passo_mul_div(limits->speed, limits->steps_per_mm, ONE),
-	    .acceleration = passo_mul_div(
-		own > 0 ? fixed(own, 1) : limits->acceleration, limits->steps_per_mm, ONE)};
+	    .acceleration =
+		passo_mul_div(own > 0 ? fixed(own, 1) : limits->acceleration, limits->steps_per_mm, ONE)};
 }
 
 uint64_t passo_grbl_take_up_speed(const struct passo_track *track)
