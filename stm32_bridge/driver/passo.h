@@ -91,8 +91,9 @@ struct passo_axis_memory {
 	bool homed;
 	bool backward; /* direction of the last line that moves it */
 #ifndef PASSO_WITHOUT_TRACKERS
-	uint16_t backlash; /* of its tracker, and the target of that while the path goes up */
+	uint16_t backlash; /* of its tracker, and the target of that while the path goes up, in the core */
 	int32_t track;
+	uint32_t tracked_from; /* position of the tracker in the core where it is 0 for the program; wraps */
 #endif
 };
 

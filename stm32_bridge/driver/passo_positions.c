@@ -137,6 +137,8 @@ enum passo_error passo_zero(struct passo *passo)
 		return passo_driver_moving(error);
 #ifndef PASSO_WITHOUT_TRACKERS
 	passo->tracked = passo->parked = 0;
+	for (unsigned i = 0; i < passo->machine.axes; i++)
+		passo->axis[i].tracked_from = 0;
 #endif
 	const int32_t zeros[PASSO_AXES_MAX] = {0};
 	for (unsigned i = 0; i < passo->machine.axes; i++)

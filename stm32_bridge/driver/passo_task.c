@@ -16,6 +16,19 @@ static enum passo_error settle(struct passo *passo, enum passo_error error)
 	return error;
 }
 
+/* The path makes the move, or the tracker of the axis that is homed. */
+static enum passo_error set_off(struct passo *passo, const struct passo_move_by_speed *move)
+{
+#ifndef PASSO_WITHOUT_TRACKERS
+	const struct passo_home *home = passo->task.home;
+
+	if (passo->task.kind == PASSO_TASK_HOME && home->track)
+		return passo_driver_track_by(
+		    passo, home->axis, move->steps[home->axis], move->speed, move->acceleration);
+#endif
+	return passo_move_by_speed(passo, move);
+}
+
 enum passo_error passo_driver_seek(
     struct passo *passo, const struct passo_trigger_config *trigger, const struct passo_move_by_speed *move)
 {
@@ -32,7 +45,7 @@ enum passo_error passo_driver_seek(
 			error = PASSO_ERROR_SWITCH_LEVEL;
 	}
 	if (error == PASSO_OK)
-		error = passo_move_by_speed(passo, move);
+		error = set_off(passo, move);
 	return error == PASSO_OK ? PASSO_PENDING : error;
 }
 
@@ -112,6 +125,9 @@ static bool has_settled(struct passo *passo)
 /* PENDING: they are on their way. */
 static enum passo_error settle_trackers(struct passo *passo)
 {
+	if (passo->task.kind == PASSO_TASK_HOME && passo->task.home->track)
+		passo->tracked =
+		    (uint8_t)(passo->tracked & ~(1u << passo->task.home->axis)); /* it is there */
 	const enum passo_error error = passo_track_again(passo);
 
 	if (error != PASSO_OK || passo->expects == PASSO_EXPECT_NOTHING)

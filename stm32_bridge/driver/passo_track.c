@@ -94,7 +94,7 @@ enum passo_error passo_track_to(struct passo *passo, const struct passo_track *t
 
 	if (error != PASSO_OK)
 		return error;
-	passo->axis[track->axis].track = target;
+	passo->axis[track->axis].track = (int32_t)((uint32_t)target + passo->axis[track->axis].tracked_from);
 	passo->axis[track->axis].backlash = track->backlash;
 	passo->parked = (uint8_t)(passo->parked & ~(1u << track->axis));
 	error = aim_at_both(passo, track->axis);
@@ -177,6 +177,33 @@ enum passo_error passo_driver_note_trackers(struct passo *passo)
 	return error;
 }
 
+enum passo_error passo_driver_track_by(
+    struct passo *passo, uint8_t axis, int32_t steps, uint64_t speed, uint64_t acceleration)
+{
+	const struct passo_track track = {.axis = axis, .top_speed = speed, .acceleration = acceleration};
+	struct passo_track_reading reading;
+	enum passo_error error = passo_read_tracker(passo, axis, &reading);
+
+	if (error == PASSO_OK)
+		error = passo_configure_tracker(passo, &track);
+	if (error == PASSO_OK)
+		error =
+		    passo_track_to(passo, &track, (int32_t)((uint32_t)reading.position + (uint32_t)steps));
+	if (error == PASSO_OK)
+		wait_for_them(passo);
+	return error;
+}
+
+enum passo_error passo_driver_track_is_at(struct passo *passo, uint8_t axis, int32_t position)
+{
+	struct passo_track_reading reading;
+	const enum passo_error error = passo_read_tracker(passo, axis, &reading);
+
+	if (error == PASSO_OK)
+		passo->axis[axis].tracked_from += (uint32_t)reading.position - (uint32_t)position;
+	return error;
+}
+
 void passo_driver_unpark(struct passo *passo, uint8_t moved)
 {
 	for (unsigned i = 0; i < passo->machine.axes; i++) {
@@ -211,10 +238,11 @@ enum passo_error passo_read_tracker(struct passo *passo, uint8_t axis, struct pa
 		error = read_state(passo, &state);
 	if (error != PASSO_OK)
 		return error;
-	*reading = (struct passo_track_reading){.position = (int32_t)position,
-	    .enabled = ((uint32_t)state.enabled >> axis & 1u) != 0u,
-	    .moves = ((uint32_t)state.moves >> axis & 1u) != 0u,
-	    .at_target = ((uint32_t)state.at_target >> axis & 1u) != 0u};
+	*reading =
+	    (struct passo_track_reading){.position = (int32_t)(position - passo->axis[axis].tracked_from),
+		.enabled = ((uint32_t)state.enabled >> axis & 1u) != 0u,
+		.moves = ((uint32_t)state.moves >> axis & 1u) != 0u,
+		.at_target = ((uint32_t)state.at_target >> axis & 1u) != 0u};
 	return PASSO_OK;
 }
 

@@ -25,7 +25,8 @@ struct passo_track {
 /* Sets the limits of a tracker, rounded down to 2^-32 steps per tick (per tick). At rest or stopped. A frame.
  * Errors: TRACKER_LIMITS, MOVING. */
 enum passo_error passo_configure_tracker(struct passo *passo, const struct passo_track *track);
-/* Sends it to a target, in steps of its own since passo_zero(), at any time. Four frames. */
+/* Sends it to a target, in steps of its own since passo_zero(), or from its home, at any time. Four frames.
+ */
 enum passo_error passo_track_to(struct passo *passo, const struct passo_track *track, int32_t target);
 /* Slows it down; it rests until its next target. Two frames. */
 enum passo_error passo_untrack(struct passo *passo, uint8_t axis);
