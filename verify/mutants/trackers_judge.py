@@ -385,7 +385,7 @@ class Trackers(Host):
         self.push(self.channel, lines, ramps)
         self.channel.start()
         self.engine.run(wait)
-        hands = [{replace(hand, follows=True) for hand in hands} for hands in self.hands]
+        hands = [{hand._replace(follows=True) for hand in hands} for hands in self.hands]
         self.enable((1 << self.axes) - 1)
         at = self.engine.clock - FRAME
         self.wait(self.channel)
