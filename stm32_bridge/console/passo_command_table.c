@@ -99,6 +99,18 @@ static const struct passo_key GOTO_KEYS[] = {
     CHANNEL,
 };
 #endif
+#ifndef PASSO_WITHOUT_TRACKERS /* for the same */
+static const struct passo_key TRACKER_KEYS[] = {
+    PASSO_VALUE("axis", axis, AXIS, NULL),
+    CHANNEL,
+    PASSO_VALUE("speed", tracker.speed, NUMBER, ""),
+    PASSO_VALUE("acceleration", tracker.acceleration, NUMBER, ""),
+    PASSO_WHOLE("backlash", tracker.backlash, 0, UINT16_MAX, ""),
+};
+static const struct passo_key TRACK_KEYS[] = {
+    PASSO_VALUE("target", distance, INTEGER, NULL), PASSO_VALUE("axis", axis, AXIS, "0"), CHANNEL};
+static const struct passo_key UNTRACK_KEYS[] = {PASSO_VALUE("axis", axis, AXIS, NULL), CHANNEL};
+#endif
 #ifndef PASSO_WITHOUT_PARTS /* for the same */
 static const struct passo_key OUTPUT_KEYS[] = {
     PASSO_WHOLE("levels", levels, 0, UINT8_MAX, ""),
@@ -185,6 +197,12 @@ const struct passo_command passo_command_table[] = {
     {"encoders", passo_run_encoders, TAKES(CHANNEL_KEYS), 0, true, "encoder and thread status"},
     {"adopt", passo_run_adopt, TAKES(ADOPT_KEYS), 1, false, "set an axis position from its encoder"},
     {"thread", passo_run_thread, TAKES(THREAD_KEYS), 0, false, "a straight line clocked by an encoder"},
+#endif
+#ifndef PASSO_WITHOUT_TRACKERS
+    {"tracker", passo_run_tracker, TAKES(TRACKER_KEYS), 1, true,
+	"configure the tracker of an axis, or show it"},
+    {"track", passo_run_track, TAKES(TRACK_KEYS), 1, true, "send the tracker of an axis to a target"},
+    {"untrack", passo_run_untrack, TAKES(UNTRACK_KEYS), 1, true, "slow a tracker down to rest"},
 #endif
     {"config", passo_run_config, NULL, 0, 0, false, "show or change settings; help config lists them"},
     {"table", passo_run_table, TAKES(TABLE_KEYS), 2, false, "load 16 of 256 points of a shape, or check it"},

@@ -77,6 +77,16 @@ static enum passo_error set_parts(struct passo_console_channel *channel)
 #endif
 }
 
+static enum passo_error set_trackers(struct passo_console_channel *channel)
+{
+#ifdef PASSO_WITHOUT_TRACKERS
+	(void)channel;
+	return PASSO_OK;
+#else
+	return passo_commands_set_trackers(channel);
+#endif
+}
+
 /* Applies the settings to a channel. */
 static enum passo_error set_up(const struct passo_console *console, struct passo_console_channel *channel)
 {
@@ -91,6 +101,8 @@ static enum passo_error set_up(const struct passo_console *console, struct passo
 		error = set_inputs(channel);
 	if (error == PASSO_OK)
 		error = set_parts(channel);
+	if (error == PASSO_OK)
+		error = set_trackers(channel);
 	channel->unset = error != PASSO_OK;
 	return error;
 }
