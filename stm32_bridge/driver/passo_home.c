@@ -32,7 +32,8 @@ static enum passo_error check_home(const struct passo *passo, const struct passo
 #ifndef PASSO_WITHOUT_TRACKERS
 	if (home->track && !passo->has_trackers)
 		return PASSO_ERROR_NO_TRACKERS;
-	if (home->track && (home->track->axis != home->axis || home->racking != 0u))
+	if (home->track ? home->track->axis != home->axis || home->racking != 0u
+	                : home->axis >= passo->machine.axes)
 		return PASSO_ERROR_ARGUMENT;
 #endif
 #ifndef PASSO_CARTESIAN
@@ -72,7 +73,7 @@ static void set_homed(struct passo *passo, const struct passo_home *home, bool h
 #ifdef PASSO_CARTESIAN
 	passo->axis[home->axis].homed = homed;
 #else
-	for (uint32_t motor = 0; motor < passo->machine.axes; motor++) {
+	for (uint32_t motor = 0; motor < passo->axes; motor++) {
 		if (sign_of(home, motor) != 0)
 			passo->axis[motor].homed = homed;
 	}
@@ -94,7 +95,7 @@ static enum passo_error go(
 #ifdef PASSO_CARTESIAN
 	move.steps[home->axis] = steps;
 #else
-	for (uint32_t motor = 0; motor < passo->machine.axes; motor++)
+	for (uint32_t motor = 0; motor < passo->axes; motor++)
 		move.steps[motor] = sign_of(home, motor) * steps;
 #endif
 	passo->task.phase = phase;
@@ -189,7 +190,7 @@ static enum passo_error set_track(struct passo *passo)
 	if (error == PASSO_OK)
 		error = passo_driver_track_is_at(passo, home->axis,
 		    (int32_t)((uint32_t)home->position + (uint32_t)now[home->axis]
-			      - (uint32_t)report.positions[home->axis]));
+		              - (uint32_t)report.positions[home->axis]));
 	if (error == PASSO_OK)
 		error = passo_configure_tracker(passo, home->track);
 	if (error == PASSO_OK)

@@ -75,7 +75,7 @@ enum passo_error passo_configure_tracker(struct passo *passo, const struct passo
 
 	if (error != PASSO_OK)
 		return error;
-	const uint32_t tick = PASSO_TRACKER_TICK(passo->machine.axes), clock_hz = passo->machine.clock_hz;
+	const uint32_t tick = PASSO_TRACKER_TICK(passo->axes), clock_hz = passo->machine.clock_hz;
 	const uint64_t speed = passo_mul_div(track->top_speed, tick, clock_hz);
 	const uint64_t acceleration =
 	    passo_mul_div(passo_mul_div(track->acceleration, tick, clock_hz), tick, clock_hz);
@@ -110,7 +110,7 @@ static enum passo_error find_limits(struct passo *passo, uint8_t axes, uint8_t *
 	if (axes == 0u || !passo->has_inputs)
 		return PASSO_OK;
 	const enum passo_error error = passo_read_inputs(passo, &readings);
-	for (unsigned i = 0; error == PASSO_OK && i < passo->machine.axes; i++) {
+	for (unsigned i = 0; error == PASSO_OK && i < passo->axes; i++) {
 		const uint8_t bit = (uint8_t)(1u << i), switches = passo->axis[i].switches;
 
 		if ((axes & bit) == 0u)
@@ -128,7 +128,7 @@ static enum passo_error park(struct passo *passo, uint8_t axes, uint8_t low)
 {
 	enum passo_error error = PASSO_OK;
 
-	for (unsigned i = 0; error == PASSO_OK && i < passo->machine.axes; i++) {
+	for (unsigned i = 0; error == PASSO_OK && i < passo->axes; i++) {
 		const struct passo_axis_memory *axis = &passo->axis[i];
 
 		if (((uint32_t)axes >> i & 1u) == 0u)
@@ -206,7 +206,7 @@ enum passo_error passo_driver_track_is_at(struct passo *passo, uint8_t axis, int
 
 void passo_driver_unpark(struct passo *passo, uint8_t moved)
 {
-	for (unsigned i = 0; i < passo->machine.axes; i++) {
+	for (unsigned i = 0; i < passo->axes; i++) {
 		const uint8_t bit = (uint8_t)(1u << i);
 
 		if ((passo->parked & moved & bit) == 0u || aim_at_both(passo, i) != PASSO_OK)

@@ -378,7 +378,7 @@ static enum passo_gcode_error check_track(
 {
 	const uint64_t hz = grbl->path.machine.clock_hz, both = timing.pulse + timing.turn;
 	const uint64_t ticks = /* per second */
-	    passo_mul_div(hz, ONE, PASSO_TRACKER_TICK(grbl->player->feed->passo->machine.axes));
+	    passo_mul_div(hz, ONE, PASSO_TRACKER_TICK(passo_axes(grbl->player->feed->passo)));
 	const uint64_t pins = passo_mul_div(hz, ONE, 2u * timing.pulse);
 	const uint64_t take_up = passo_grbl_take_up_speed(track);
 	const uint64_t swift = 2u * take_up < pins ? pins - take_up : pins / 2u;
