@@ -261,7 +261,7 @@ def test_settings_are_at_the_end_of_its_flash(board: GrblBoard) -> None:
 
 
 def place(board: GrblBoard) -> int:
-    """Of the first motor, in steps."""
+    """Steps of the first motor since the last call."""
     events = board.events()
     level = events["step"].astype(np.int64) & 1
     rising = np.flatnonzero(np.diff(level, prepend=0) == 1)
@@ -284,7 +284,7 @@ def test_backlash_is_taken_up(image: tuple[str, ...], elf: Path) -> None:
         assert board.report()["MPos"].startswith("0.250,")
         for line in ("G91 G1 X0.25 F3000", "G4 P0.05"):
             assert board.line(line) == "ok"
-        assert place(board) == 40 and board.report()["MPos"].startswith("0.500,")
+        assert place(board) == 20 + 8 and board.report()["MPos"].startswith("0.500,")
         assert not board.faults
     with model_engine(PARAMETERS, HZ) as engine:
         board = GrblBoard(engine, elf)
