@@ -15,7 +15,7 @@ from passo.toolchain import paths
 from passo_fpga import boards as module
 from passo_fpga import report, synth
 from passo_fpga.boards import Board, board, boards
-from passo_fpga.devices import ECP5, GOWIN, ICE40
+from passo_fpga.devices import ECP5, GW1N, GW2A, ICE40
 from passo_fpga.generate import TOP, generate, pin_file, pll_file
 from passo_fpga.pll import PllError, dividers
 from passo_fpga.table import BoardError, TableError
@@ -25,17 +25,21 @@ BOARDS = list(boards().values())
 PIN = {  # port and pin in each kind of file
     ICE40: re.compile(r"^set_io (?:-pullup yes )?(\S+)\s+(\S+)", re.M),
     ECP5: re.compile(r'^LOCATE COMP "(\S+)" SITE "(\S+)";', re.M),
-    GOWIN: re.compile(r'^IO_LOC "(\S+)" (\d+);', re.M),
+    **dict.fromkeys((GW1N, GW2A), re.compile(r'^IO_LOC "(\S+)" (\d+);', re.M)),
 }
 PULL = {  # how a port is pulled up or down
     ICE40: {"up": r"^set_io -pullup yes {} "},
     ECP5: {"up": r'^IOBUF PORT "{}" .*PULLMODE=UP\b', "down": r'^IOBUF PORT "{}" .*PULLMODE=DOWN\b'},
-    GOWIN: {"up": r'^IO_PORT "{}" .*PULL_MODE=UP\b', "down": r'^IO_PORT "{}" .*PULL_MODE=DOWN\b'},
+    **{
+        family: {"up": r'^IO_PORT "{}" .*PULL_MODE=UP\b', "down": r'^IO_PORT "{}" .*PULL_MODE=DOWN\b'}
+        for family in (GW1N, GW2A)
+    },
 }
 CELLS = {
     ICE40: ["ice40/cells_sim.v"],
     ECP5: ["ecp5/cells_sim.v", "ecp5/cells_bb.v"],
-    GOWIN: ["gowin/cells_sim.v", "gowin/cells_xtra_gw1n.v"],
+    GW1N: ["gowin/cells_sim.v", "gowin/cells_xtra_gw1n.v"],
+    GW2A: ["gowin/cells_sim.v", "gowin/cells_xtra_gw2a.v"],
 }
 
 each_board = pytest.mark.parametrize("board", BOARDS, ids=lambda board: board.name)
@@ -154,11 +158,11 @@ def test_pll_makes_the_clock(board: Board) -> None:
         inside = made * p["CLKOP_DIV"]
         low, high = 400, 800
     else:
-        assert board.device.family is GOWIN
         assert f'.FCLKIN("{osc:g}")' in pll_file(board)
         made = osc / (p["IDIV_SEL"] + 1) * (p["FBDIV_SEL"] + 1)
         inside = made * p["ODIV_SEL"]
-        low, high = 400, 1200
+        name, low, high = {GW1N: ("GW1NR-9C", 400, 1200), GW2A: ("GW2AR-18C", 500, 1250)}[board.device.family]
+        assert f'.DEVICE("{name}")' in pll_file(board)
     assert made == pytest.approx(board.clock_mhz, rel=0.01)
     assert board.parameters()["CLOCK_HZ"] == round(made * 1e6)
     assert low <= inside <= high
@@ -205,9 +209,11 @@ def test_top_elaborates(board: Board) -> None:
     [
         ("tangnano9k", ["encoders"]),
         ("tangnano9k", ["inputs", "outputs"]),
+        ("tangnano20k", ["inputs", "outputs"]),
         ("icebreaker", ["outputs"]),
         ("icebreaker", ["inputs", "outputs"]),
         ("colorlight", ["trackers"]),
+        ("colorlighti5", ["inputs", "outputs"]),
     ],
 )
 def test_top_elaborates_with_parts(name: str, parts: list[str]) -> None:
@@ -221,7 +227,7 @@ def test_top_elaborates_with_parts(name: str, parts: list[str]) -> None:
     modules = (FOLDER / "elaborated" / name / "modules.txt").read_text()
     assert ("passo_trackers" in modules) == ("trackers" in parts)
     if "inputs" in parts:
-        assert (set(core["alarm"]) == {"0"}) == (name == "icebreaker")
+        assert (set(core["alarm"]) == {"0"}) == (name in {"icebreaker", "tangnano20k"})
 
 
 CELLS_OF_A_BENCH = """\
@@ -540,7 +546,7 @@ capacity = 7680
     [
         ('title = "Made up"\n', "", "title: missing; must be a text"),
         ('title = "Made up"', "title = ", "board.toml: Invalid value (at line 1, column 9)"),
-        ('"up5k"', '"up6k"', "device: must be one of hx8k, up5k, ecp5-25, gw1nr-9c, not 'up6k'"),
+        ('"up5k"', '"up6k"', "device: must be one of hx8k, up5k, ecp5-25, gw1nr-9c, gw2ar-18, not 'up6k'"),
         (
             'device = "up5k"',
             'device = { like = "gw1nr-9c" }',
