@@ -370,8 +370,10 @@ def test_an_encoder_that_is_not_there_stands_still(tmp_path: Path, there: int) -
 @each_board
 def test_board_is_on_the_pages(board: Board) -> None:
     """docs/fpga.md leads to its table, README.md has its name."""
-    assert f"[{board.name}](../syn/{board.name}/board.toml)" in (paths.docs / "fpga.md").read_text()
-    assert f"`{board.name}`" in (paths.root / "README.md").read_text().replace("BOARD=", "`")
+    page = (paths.docs / "fpga.md").read_text()
+    assert f"[{board.folder}](../syn/{board.folder}/board.toml)" in page
+    assert board.name == board.folder or f"`{board.name}`" in page
+    assert f"`{board.folder}`" in (paths.root / "README.md").read_text().replace("BOARD=", "`")
 
 
 def test_boards_are_listed_and_unknown_ones_refused(capsys: pytest.CaptureFixture[str]) -> None:
@@ -530,6 +532,30 @@ def test_relative_of_a_device(made_up: Path) -> None:
     device = board("made_up").device
     assert (device.family, device.part, device.capacity) == (ICE40, ("--lp8k", "--package", "cm81"), 7680)
     assert (device.synthesis, device.title) == ("synth_ice40 -device lp", "Made up")
+
+
+@pytest.mark.parametrize(("size", "capacity"), [("12", 24288), ("25", 24288), ("45", 43848)])
+def test_sizes_of_a_board(size: str, capacity: int) -> None:
+    """Another FPGA, at the same pins, with a bitstream that says so."""
+    one, large = board(f"ulx3s-{size}"), board("ulx3s")
+    assert one.device.part[0] == f"--{size}k" and one.device.capacity == capacity
+    assert one.title == f"ULX3S (ECP5-{size})" and one.folder == "ulx3s"
+    assert one.ports(3, ["inputs", "outputs"]) == large.ports(3, ["inputs", "outputs"])
+    assert one.parameters() == large.parameters()
+
+
+def test_a_wrong_size_is_refused(made_up: Path) -> None:
+    """Board and key are reported; a name that is none as well."""
+    table = MADE_UP + '[sizes.8]\ntitle = "Small"\npart = ["--lp8k"]\ncapacity = 7680\n'
+    made_up.write_text(table)
+    assert module.names() == ["made_up", "made_up-8"]
+    assert board("made_up-8").device.title == "Small" and board("made_up").title == "Made up"
+    with pytest.raises(BoardError, match="unknown board 'made_up-9'; did you mean made_up-8"):
+        board("made_up-9")
+    made_up.write_text(table.replace("capacity", "luts"))
+    for name in ("made_up", "made_up-8"):
+        with pytest.raises(TableError, match=r"sizes\.8\.capacity: missing; must be a number"):
+            board(name)
 
 
 RELATIVE = """\

@@ -55,9 +55,12 @@ COMPLAINTS = (
 NO_COMPLAINTS = """\
 Info: Cell O_psram_ck[0] not found
 Info: Cell IO_psram_dq[15] not found
+Info: Cell O_sdram_clk not found
+Info: Cell IO_sdram_dq[31] not found
 Info: Routing globals...
 Info:     'sclk' net was routed.
 Warning: Max frequency for clock  'clk': 117.51 MHz (FAIL at 120.08 MHz)
+Warning: Failed to route net 'core_low[1]' from X26Y0/F6 to X31Y20/B2 using dedicated routing.
 1 warning, 0 errors
 """
 

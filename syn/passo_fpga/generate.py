@@ -97,4 +97,4 @@ def pin_file(board: Board, axes: int | None = None, parts: Sequence[str] = ()) -
 
 
 def _table(board: Board) -> str:
-    return f"{FOLDER.name}/{board.name}/{TABLE}"
+    return f"{FOLDER.name}/{board.folder}/{TABLE}"
