@@ -143,7 +143,10 @@ module passo_channel #(
   wire            tracking;
   wire [AXES-1:0] step_request;
   wire [AXES-1:0] directions;
-  wire [    31:0] trackers_read_data;
+  wire [    23:0] trackers_read_data;
+  wire            of_tracker;
+  wire            tracker_takes;
+  wire [    15:0] tracker_half;
   /* verilator lint_off UNUSEDSIGNAL */
   wire [    15:0] bus_half;
   /* verilator lint_on UNUSEDSIGNAL */
@@ -215,7 +218,7 @@ module passo_channel #(
   assign bad_value = inputs_bad_value | outputs_bad_value;
   assign refusal = line_refusal | ramp_refusal | raster_refusal;
   assign read_data = registers_read_data | axes_read_data | inputs_read_data | encoders_read_data | outputs_read_data
-                     | trackers_read_data;
+                     | {8'd0, trackers_read_data};
 
   reg  [2:0] occupied_q;  // a line loaded in the clock of a stop changes DIR up to 4 clocks later
   reg        at_rest;  // no motion, no step in flight to the axes, no change of the outputs that waits
@@ -423,6 +426,7 @@ module passo_channel #(
   passo_axes #(
     .AXES        (AXES),
     .INPUTS      (INPUTS),
+    .TRACKERS    (TRACKERS),
     .BLOCK_RAM   (STEPS_REGISTER == 0),
     .STEP_RESET  (STEP_RESET),
     .DIR_RESET   (DIR_RESET),
@@ -437,6 +441,9 @@ module passo_channel #(
     .bus_address    (bus_address[3:0]),
     .bus_data       (bus_data),
     .read_data      (axes_read_data),
+    .of_tracker     (of_tracker),
+    .tracker_takes  (tracker_takes),
+    .tracker_half   (tracker_half),
     .bus_half       (bus_half),
     .step_request   (step_request),
     .directions     (directions),
@@ -588,6 +595,9 @@ module passo_channel #(
         .bus_bits    (bus_data[AXES-1:0]),
         .bus_half    (bus_half),
         .read_data   (trackers_read_data),
+        .of_tracker  (of_tracker),
+        .tracker_takes(tracker_takes),
+        .tracker_half(tracker_half),
         .halt        (drop | stopped),
         .zero        (command_zero),
         .brake       (stopping),
@@ -602,7 +612,10 @@ module passo_channel #(
         .directions  (directions)
       );
     end else begin : g_no_trackers
-      assign trackers_read_data = 32'd0;
+      assign trackers_read_data = 24'd0;
+      assign of_tracker         = 1'b0;
+      assign tracker_takes      = 1'b0;
+      assign tracker_half       = 16'd0;
       assign tracking           = 1'b0;
       assign step_request       = path_steps;
       assign directions         = path_directions;

@@ -38,7 +38,10 @@ module passo_tracker #(
   input  wire [     7:0] bus_address,  // within the channel
   input  wire [AXES-1:0] bus_bits,     // lower bits of the data
   input  wire [    15:0] bus_half,     // one clock late the upper half of the data, then the lower one
-  output wire [    31:0] read_data,
+  output wire [    23:0] read_data,
+  output reg             of_tracker,   // a position is addressed
+  output wire            tracker_takes,  // strobe: show its lower half, and in the next clock its upper half
+  output wire [    15:0] tracker_half,
   // motion
   input  wire            halt,         // hard stop, or stopped
   input  wire            zero,         // strobe: only at rest
@@ -371,7 +374,6 @@ module passo_tracker #(
   wire    turn_over = slot == 5'd0;  // the sum of the lowest whole step of the position
   reg     write_enable;
   reg     read_state;
-  reg     read_position;
   integer j;
 
   always @(posedge clk) begin
@@ -414,31 +416,27 @@ module passo_tracker #(
   end
 
   // ---- host: registers ----
-  reg [31:0] position;
-  reg        takes_upper;
-  reg        in_state;
-  reg        in_positions;
+  reg  takes_upper;
+  reg  in_state;
+  // It is addressed for longer than a turn before it is read. Not torn: a read takes what was there before.
+  wire takes_lower = slot == 5'd21 && !bus_read;
+
+  assign tracker_takes = takes_lower | takes_upper;
+  assign tracker_half  = second_word;
 
   always @(posedge clk) begin
     in_targets <= select && bus_address[7:4] == CHANNEL_TRACKER_TARGET_BASE[7:4] && {1'b0, number} < AXES[3:0];
     in_axis    <= select && bus_address[7:6] == CHANNEL_AXIS_BASE[7:6] && bus_address[2:1] == AXIS_TRACKER_SPEED[2:1]
                   && {1'b0, bus_address[5:3]} < AXES[3:0];
     in_state <= select && bus_address[7:1] == CHANNEL_TRACKER_ENABLE[7:1];
-    in_positions <= select && bus_address[7:3] == CHANNEL_TRACKER_POSITION_BASE[7:3];
+    of_tracker <= select && bus_address[7:3] == CHANNEL_TRACKER_POSITION_BASE[7:3];
     write_enable <= bus_write && in_state && !number[0];
     read_state <= bus_read && in_state && number[0];
-    read_position <= bus_read && in_positions;
-
-    // It is addressed for longer than a turn before it is read. Not torn: a read takes what was there before.
-    takes_upper <= slot == 5'd21 && !bus_read;
-    if (slot == 5'd21 && !bus_read) position[15:0] <= second_word;
-    if (takes_upper) position[31:16] <= second_word;
+    takes_upper <= takes_lower;
 
     if (rst) begin
       write_enable  <= 1'b0;
       read_state    <= 1'b0;
-      read_position <= 1'b0;
-      position      <= 32'd0;
     end
   end
 
@@ -446,8 +444,7 @@ module passo_tracker #(
   wire [7:0] moves_padded = {{(8 - AXES) {1'b0}}, moves};
   wire [7:0] at_target_padded = {{(8 - AXES) {1'b0}}, at_target};
 
-  assign read_data = (read_state ? {8'd0, at_target_padded, moves_padded, enabled_padded} : 32'd0)
-                     | (read_position ? position : 32'd0);
+  assign read_data = read_state ? {at_target_padded, moves_padded, enabled_padded} : 24'd0;
 
 endmodule
 `resetall

@@ -19,7 +19,10 @@ module passo_trackers #(
   input  wire [     7:0] bus_address,   // within the channel
   input  wire [AXES-1:0] bus_bits,      // lower bits of the data
   input  wire [    15:0] bus_half,      // one clock late the upper half of the data, then the lower one
-  output wire [    31:0] read_data,
+  output wire [    23:0] read_data,
+  output wire            of_tracker,    // a position of a tracker is addressed
+  output wire            tracker_takes, // strobe: show its lower half, and in the next clock its upper half
+  output wire [    15:0] tracker_half,
   // motion
   input  wire            halt,          // hard stop, or stopped
   input  wire            zero,          // strobe: only at rest
@@ -62,6 +65,9 @@ module passo_trackers #(
     .bus_bits   (bus_bits),
     .bus_half   (bus_half),
     .read_data  (read_data),
+    .of_tracker (of_tracker),
+    .tracker_takes(tracker_takes),
+    .tracker_half(tracker_half),
     .halt       (halt),
     .zero       (zero),
     .brake      (brake),
