@@ -21,7 +21,8 @@
 //
 // All numbers are in a memory of 16-bit words that is read twice a clock and written once: two words are added, or
 // subtracted, with a carry from word to word. Positions are Q32.32, t is UQ32.32, the others are UQ0.32 steps. What
-// the host writes stands in a memory of its own and is copied once a turn, but for the turn in which it is written.
+// the host writes stands in a memory of its own and is copied: the target in each turn, speed and acceleration in
+// every other one; but not in a turn in which it is written while it is read.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -58,31 +59,30 @@ module passo_tracker #(
 
   localparam AXIS_BITS = AXES > 4 ? 3 : 2;
 
-  // Numbers of an axis, by pairs of words. Of 64 bits are y, t and the position; of the target the lower pair is 0.
-  localparam [3:0] VELOCITY = 4'd0;  // of one tick at 0, of the next one at 1
-  localparam [3:0] FASTER = 4'd2;  // w
-  localparam [3:0] SLOWER = 4'd3;
-  localparam [3:0] SPEED = 4'd4;
+  // Numbers of an axis, by pairs of words. Of 64 bits are y, z, t and the position; the lower pair of the target is 0.
+  localparam [2:0] LIMIT = 3'd2;  // at 2 the speed, at 10 the acceleration
+  localparam [2:0] VELOCITY = 3'd3;  // at 3 of even ticks, at 11 of odd ones; before the new one its place has w
+  localparam [3:0] NOWHERE = 4'd4;
   localparam [3:0] TARGET = 4'd5;
-  localparam [3:0] SCRATCH = 4'd6;  // y
-  localparam [3:0] ACCELERATION = 4'd8;
+  localparam [3:0] DISTANCE = 4'd6;  // y
+  localparam [3:0] LEFT = 4'd8;  // z
   localparam [3:0] STOPPING = 4'd12;  // t
   localparam [3:0] POSITION = 4'd14;
 
   // ---- the program: two slots for each line, one word a slot ----
   //
-  //   0  w = v + a             4  y = target - position   8  y - w * sign            12  new t
-  //   1  v - a                 5                          9                          13
-  //   2  speed - v             6  y -= t * sign          10  reads for the host      14  new position
-  //   3  speed - w             7                         11  new v, of v, w, v - a   15
+  //   0  w = v + a        4  y = target - position   8  z - w * sign           12  t + w, t - v or t
+  //   1  copies target    5                          9                         13
+  //   2  speed - v        6  z = y - t * sign       10  copies speed or a      14  position + new v * sign, or + y
+  //   3  speed - w        7                         11  new v: w, v, or v - a  15
   //
   // y is d * sign, less 1 if sign is negative, so that its sign bit, as one of d, is right after additions, too.
   // A slot reads its words; one clock later they are what is added, two clocks later, so one line, the sum is written:
-  // it can be read three slots later.
+  // it can be read three slots later. In line 10 the second word is that of a position for the host.
 
   reg  [          4:0] slot;
   reg  [AXIS_BITS-1:0] axis;
-  reg                  odd;  // tick: which word is the new velocity
+  reg                  odd;  // tick
   wire [          3:0] line = slot[4:1];
   wire                 word = slot[0];  // the upper one of the pair
   wire                 turn_ends = slot == 5'd31;
@@ -115,44 +115,41 @@ module passo_tracker #(
   reg        cleared_position;
 
   // ---- addresses ----
-  wire [3:0] old_velocity = {VELOCITY[3:1], odd};
-  wire [3:0] new_velocity = {VELOCITY[3:1], ~odd};
-  reg  [3:0] first;
-  reg  [3:0] second;
-  reg        subtracts;
-  reg        is_zero;  // write 0
-  reg        is_first;  // the lowest word
-  reg        no_first;  // take 0
-  reg        no_second;
+  wire is_zero = line[3] & line[2] & line[1] ? cleared_position : line[3] & (line[2] | (line[1] & line[0])) & cleared;
+  reg [3:0] first;
+  reg [3:0] second;
+  reg       subtracts;
+  reg       borrows;  // carry into the lowest word
+  reg       is_first;  // the lowest word
+  reg       no_first;  // take 0
+  reg       no_second;
 
   always @* begin
-    first     = {SCRATCH[3:1], line[0]};
-    second    = 4'bx;
+    first     = line;
+    second    = {odd, VELOCITY};
     subtracts = ~negative;
-    is_zero   = 1'b0;
     is_first  = ~word & ~line[0];
-    no_first  = 1'b0;
-    no_second = 1'b0;
+    no_first  = is_zero;
+    no_second = is_zero;
     case (line)
       4'd0: begin
-        first     = old_velocity;
-        second    = ACCELERATION;
+        first     = {odd, VELOCITY};
+        second    = {1'b1, LIMIT};
         subtracts = 1'b0;
       end
       4'd1: begin
-        first     = old_velocity;
-        second    = ACCELERATION;
-        subtracts = 1'b1;
+        first     = TARGET;
+        subtracts = 1'b0;
         is_first  = ~word;
+        no_second = 1'b1;
       end
       4'd2: begin
-        first     = SPEED;
-        second    = old_velocity;
+        first     = {1'b0, LIMIT};
         subtracts = 1'b1;
       end
       4'd3: begin
-        first     = SPEED;
-        second    = FASTER;
+        first     = {1'b0, LIMIT};
+        second    = {~odd, VELOCITY};
         subtracts = 1'b1;
         is_first  = ~word;
       end
@@ -164,73 +161,73 @@ module passo_tracker #(
       end
       4'd6, 4'd7: second = {STOPPING[3:1], line[0]};
       4'd8, 4'd9: begin
-        second    = FASTER;
+        second    = {~odd, VELOCITY};
         no_second = line[0];
       end
       4'd10: begin
-        first  = 4'bx;
-        second = {POSITION[3:1], 1'b1};
-      end
-      4'd11: begin
-        first     = speeds ? FASTER : keeps ? old_velocity : SLOWER;
+        first     = {odd, LIMIT};
+        second    = {POSITION[3:1], 1'b1};
         subtracts = 1'b0;
-        is_first  = ~word;
-        is_zero   = cleared;
         no_second = 1'b1;
       end
+      4'd11: begin
+        first     = {odd ^ speeds, VELOCITY};
+        second    = {1'b1, LIMIT};
+        subtracts = 1'b1;
+        is_first  = ~word;
+        no_second = is_zero | speeds | keeps;
+      end
       4'd12, 4'd13: begin
-        first     = {STOPPING[3:1], line[0]};
-        second    = speeds ? FASTER : old_velocity;
+        second    = {odd ^ speeds, VELOCITY};
         subtracts = ~speeds;
-        is_zero   = cleared;
-        no_second = line[0] | keeps;
+        no_second = is_zero | line[0] | keeps;
       end
       default: begin
-        first     = lands ? TARGET : {POSITION[3:1], line[0]};
-        second    = new_velocity;
-        subtracts = negative;
-        is_zero   = cleared_position;
-        no_first  = lands & ~line[0];
-        no_second = lands | line[0];
+        second    = lands ? {DISTANCE[3:1], line[0]} : {~odd, VELOCITY};
+        subtracts = negative & ~lands;
+        no_second = is_zero | (line[0] & ~lands);
       end
+    endcase
+    case (line)
+      4'd4:    borrows = ~negative;
+      4'd14:   borrows = negative;
+      default: borrows = subtracts;
     endcase
   end
 
   // ---- settings of the host: target up, target down, speed, acceleration, upper halves at odd places ----
-  // The upper half is written and copied first: a copy is whole, unless it begins with the write. They are copied where
-  // sums are not written: the target is read in slots 5 and 6, speed in 17 and 18, acceleration in 19 and 20, each word
-  // written one clock later.
+  // The upper half is written and copied first: a copy is whole, unless it begins with the write. Then what was copied
+  // before takes its place.
   wire [ 2:0] number = bus_address[2:0];
   reg         in_targets;  // decoded one clock ahead of the strobe
   reg         in_axis;
   reg         writes_upper;
   reg         writes_lower;
   reg  [ 4:0] host_place;
-  reg         keeps_setting;  // the host has written since the upper half was read
-  wire        copies = line == 4'd3 || line == 4'd9 || line == 4'd10;
-  wire        copies_last = slot[2] | (slot[1] & slot[0]);
+  wire        copies = line == 4'd1 || line == 4'd10;
+  reg         copies_q;  // and the host has not written
   wire [15:0] setting_word;
 
   // ---- address of the sum: of one line before ----
   reg [3:0] result;
-  reg       writes;
+  wire copied = line == 4'd2 || line == 4'd11;
 
   always @* begin
-    result = {SCRATCH[3:1], ~line[0]};
-    writes = 1'b1;
     case (line)
-      4'd1:         result = FASTER;
-      4'd2:         result = SLOWER;
-      4'd3:         result = TARGET;
-      4'd9:         result = SPEED;
-      4'd10:        result = ACCELERATION;
-      4'd12:        result = new_velocity;
-      4'd13, 4'd14: result = {STOPPING[3:1], ~line[0]};
-      4'd15, 4'd0:  result = {POSITION[3:1], ~line[0]};
-      4'd4, 4'd11:  {result, writes} = 5'bxxxx_0;
-      default:      ;
+      4'd1:    result = {~odd, VELOCITY};
+      4'd2:    result = TARGET;
+      4'd5:    result = DISTANCE;
+      4'd6:    result = DISTANCE + 4'd1;
+      4'd7:    result = LEFT;
+      4'd8:    result = LEFT + 4'd1;
+      4'd11:   result = {odd, LIMIT};
+      4'd12:   result = speeds ? NOWHERE : {~odd, VELOCITY};
+      4'd13:   result = STOPPING;
+      4'd14:   result = STOPPING + 4'd1;
+      4'd15:   result = POSITION;
+      4'd0:    result = POSITION + 4'd1;
+      default: result = NOWHERE;
     endcase
-    if (copies) writes = ~(word ? keeps_setting : writes_lower);
   end
 
   // ---- memory ----
@@ -246,9 +243,7 @@ module passo_tracker #(
   reg carry;
   wire [16:0] sum = {1'b0, first_term} + {1'b0, second_term} + {16'd0, carry};
   wire [2:0] axis_padded = {{(3 - AXIS_BITS) {1'b0}}, axis};
-  wire [7:0] place = {
-    {(3 - AXIS_BITS) {1'b0}}, written, result, word ^ copies
-  };  // upper halves are copied first
+  wire [7:0] place = {{(3 - AXIS_BITS) {1'b0}}, written, result, word ^ copied};
   wire host_reads = line == 4'd10;
 
   passo_memory #(
@@ -260,7 +255,7 @@ module passo_tracker #(
     .write        ((writes_upper & ~rst) | writes_lower),
     .write_address({host_place, writes_upper}),
     .write_data   (bus_half),
-    .read_address ({axis_padded, slot[4], slot[4] ? copies_last : target_down, slot[0]}),
+    .read_address ({axis_padded, line[3], line[3] ? odd : target_down, ~word}),
     .load         (1'b1),
     .read_data    (setting_word)
   );
@@ -271,10 +266,10 @@ module passo_tracker #(
     .DATA_REGISTER(0)
   ) u_first (
     .clk          (clk),
-    .write        (writes & ~rst),
+    .write        (~rst),
     .write_address(place),
-    .write_data   (copies ? setting_word : sum[15:0]),
-    .read_address ({axis_padded, first, word}),
+    .write_data   (sum[15:0]),
+    .read_address ({axis_padded, first, word ^ copies}),
     .load         (1'b1),
     .read_data    (first_word)
   );
@@ -285,9 +280,9 @@ module passo_tracker #(
     .DATA_REGISTER(0)
   ) u_second (
     .clk          (clk),
-    .write        (writes & ~rst),
+    .write        (~rst),
     .write_address(place),
-    .write_data   (copies ? setting_word : sum[15:0]),
+    .write_data   (sum[15:0]),
     .read_address ({host_reads ? number : axis_padded, second, word}),
     .load         (1'b1),
     .read_data    (second_word)
@@ -300,21 +295,21 @@ module passo_tracker #(
   wire    [17:0] differs = {2'd0, sum[15:0] ^ {16{sign}}};
   reg     [ 5:0] same;
   reg            all_same;
-  reg            parity;  // of the number of steps: the position, rounded to the nearest step
+  reg            crosses;  // the upper bit of the position below 1 changes: a step is due where that or bit 0 does
   integer        k;
 
   always @(posedge clk) begin
     slot          <= slot + 5'd1;
-    subtracts_q   <= subtracts & ~is_zero;
-    borrows_q     <= (line == 4'd4 ? ~negative : subtracts) & ~is_zero;
+    subtracts_q   <= subtracts;
+    borrows_q     <= borrows;
     begins_q      <= is_first;
-    no_first_q    <= no_first | is_zero;
-    no_second_q   <= no_second | is_zero;
-    first_term    <= first_word & ~{16{no_first_q}};
+    no_first_q    <= no_first;
+    no_second_q   <= no_second;
+    copies_q      <= copies & ~(word ? writes_lower : writes_upper);
+    first_term    <= (copies_q ? setting_word : first_word) & ~{16{no_first_q}};
     second_term   <= (second_word & ~{16{no_second_q}}) ^ {16{subtracts_q}};
     carry         <= begins_q ? borrows_q : sum[16];
     writes_lower  <= writes_upper & ~rst;
-    keeps_setting <= writes_lower;
     writes_upper  <= bus_write & (in_targets | in_axis) & ~rst;
     if (bus_write)
       host_place <= in_axis ? {bus_address[5:3], 1'b1, number[0]} : {number, 1'b0, bus_address[3]};
@@ -329,9 +324,7 @@ module passo_tracker #(
     if (line == 4'd6) behind <= sum[15] ^ negative;
     if (line == 4'd8) near <= sum[15] ^ negative;
     if (line == 4'd10) close <= sum[15] ^ negative;
-    if (line == 4'd5) parity <= second_term[15];
-    if (slot == 5'd12) parity <= parity ^ second_term[0];
-    if (slot == 5'd31) parity <= parity ^ sum[15];
+    crosses <= first_term[15] ^ sum[15];
     for (k = 0; k < 6; k = k + 1) same[k] <= differs[k*3+:3] == 3'd0;
     all_same <= &same & (all_same | (slot[0] & ~slot[2]));  // begins in slots 11 and 25
     if (slot == 5'd15) there <= all_same & ~cleared_position;
@@ -389,7 +382,7 @@ module passo_tracker #(
     step_made <= {AXES{1'b0}};
     for (j = 0; j < AXES; j = j + 1) begin
       if (turn_over && written == j[AXIS_BITS-1:0]) begin
-        step_made[j] <= (parity ^ sum[0]) & ~(clearing | cleared);
+        step_made[j] <= (crosses ^ first_term[0] ^ sum[0]) & ~(clearing | cleared);
         signs[j]     <= negative ^ (rests & behind & ~brakes);
         turns[j]     <= ~stays_zero;
         at_target[j] <= there;
