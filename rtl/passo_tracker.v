@@ -59,24 +59,23 @@ module passo_tracker #(
 
   localparam AXIS_BITS = AXES > 4 ? 3 : 2;
 
-  // Numbers of an axis, by pairs of words. Of 64 bits are y, z, t and the position; the lower pair of the target is 0.
+  // Numbers of an axis, by pairs of words. Of 64 bits are d, z, t and the position; the lower pair of the target is 0.
   localparam [2:0] LIMIT = 3'd2;  // at 2 the speed, at 10 the acceleration
   localparam [2:0] VELOCITY = 3'd3;  // at 3 of even ticks, at 11 of odd ones; before the new one its place has w
-  localparam [3:0] NOWHERE = 4'd4;
-  localparam [3:0] TARGET = 4'd5;
-  localparam [3:0] DISTANCE = 4'd6;  // y
+  localparam [3:0] DISTANCE = 4'd4;  // d
+  localparam [3:0] NOWHERE = 4'd6;
+  localparam [3:0] TARGET = 4'd7;
   localparam [3:0] LEFT = 4'd8;  // z
   localparam [3:0] STOPPING = 4'd12;  // t
   localparam [3:0] POSITION = 4'd14;
 
   // ---- the program: two slots for each line, one word a slot ----
   //
-  //   0  w = v + a        4  y = target - position   8  z - w * sign           12  t + w, t - v or t
+  //   0  w = v + a        4  d                       8  z - w                  12  t + w, t - v or t
   //   1  copies target    5                          9                         13
-  //   2  speed - v        6  z = y - t * sign       10  copies speed or a      14  position + new v * sign, or + y
+  //   2  speed - v        6  z = d - t              10  copies speed or a      14  position + new v * sign, or + d * sign
   //   3  speed - w        7                         11  new v: w, v, or v - a  15
   //
-  // y is d * sign, less 1 if sign is negative, so that its sign bit, as one of d, is right after additions, too.
   // A slot reads its words; one clock later they are what is added, two clocks later, so one line, the sum is written:
   // it can be read three slots later. In line 10 the second word is that of a position for the host.
 
@@ -108,29 +107,28 @@ module passo_tracker #(
   wire lands = stays_zero & ~(brakes | behind) & (rests ? close : near);
 
   // ---- clearing: v and t after a hard stop, all numbers after a reset or `zero`; for what is left of a tick and one ----
-  reg  [1:0] clears;
-  reg        clears_position;
-  wire       clearing = clears != 2'd0;
-  reg        cleared;  // in this turn
-  reg        cleared_position;
+  reg clearing;
+  reg clears_again;  // in the next tick
+  reg clears_position;
+  reg cleared;  // in this turn, which then rests
+  reg cleared_position;
 
   // ---- addresses ----
-  wire is_zero = line[3] & line[2] & line[1] ? cleared_position : line[3] & (line[2] | (line[1] & line[0])) & cleared;
-  reg [3:0] first;
-  reg [3:0] second;
-  reg       subtracts;
-  reg       borrows;  // carry into the lowest word
-  reg       is_first;  // the lowest word
-  reg       no_first;  // take 0
-  reg       no_second;
+  wire [3:0] from = {~negative, POSITION[2:1], line[0]};  // d: TARGET differs from the upper pair in this bit alone
+  reg  [3:0] first;
+  reg  [3:0] second;
+  reg        subtracts;
+  reg        is_first;  // the lowest word
+  reg        no_first;  // take 0
+  reg        no_second;
 
   always @* begin
     first     = line;
     second    = {odd, VELOCITY};
-    subtracts = ~negative;
+    subtracts = 1'b1;
     is_first  = ~word & ~line[0];
-    no_first  = is_zero;
-    no_second = is_zero;
+    no_first  = 1'b0;
+    no_second = 1'b0;
     case (line)
       4'd0: begin
         first     = {odd, VELOCITY};
@@ -143,23 +141,22 @@ module passo_tracker #(
         is_first  = ~word;
         no_second = 1'b1;
       end
-      4'd2: begin
-        first     = {1'b0, LIMIT};
-        subtracts = 1'b1;
-      end
+      4'd2:    first = {1'b0, LIMIT};
       4'd3: begin
-        first     = {1'b0, LIMIT};
-        second    = {~odd, VELOCITY};
-        subtracts = 1'b1;
-        is_first  = ~word;
+        first    = {1'b0, LIMIT};
+        second   = {~odd, VELOCITY};
+        is_first = ~word;
       end
       4'd4, 4'd5: begin
-        first     = TARGET;
-        second    = {POSITION[3:1], line[0]};
-        subtracts = 1'b1;
-        no_first  = ~line[0];
+        first     = {~from[3], from[2:0]};
+        second    = from;
+        no_first  = ~line[0] & ~negative;
+        no_second = ~line[0] & negative;
       end
-      4'd6, 4'd7: second = {STOPPING[3:1], line[0]};
+      4'd6, 4'd7: begin
+        first  = {DISTANCE[3:1], line[0]};
+        second = {STOPPING[3:1], line[0]};
+      end
       4'd8, 4'd9: begin
         second    = {~odd, VELOCITY};
         no_second = line[0];
@@ -173,25 +170,22 @@ module passo_tracker #(
       4'd11: begin
         first     = {odd ^ speeds, VELOCITY};
         second    = {1'b1, LIMIT};
-        subtracts = 1'b1;
         is_first  = ~word;
-        no_second = is_zero | speeds | keeps;
+        no_first  = cleared;
+        no_second = speeds | keeps;
       end
       4'd12, 4'd13: begin
         second    = {odd ^ speeds, VELOCITY};
         subtracts = ~speeds;
-        no_second = is_zero | line[0] | keeps;
+        no_first  = cleared;
+        no_second = line[0] | keeps;
       end
       default: begin
         second    = lands ? {DISTANCE[3:1], line[0]} : {~odd, VELOCITY};
-        subtracts = negative & ~lands;
-        no_second = is_zero | (line[0] & ~lands);
+        subtracts = negative;
+        no_first  = cleared_position;
+        no_second = line[0] & ~lands;
       end
-    endcase
-    case (line)
-      4'd4:    borrows = ~negative;
-      4'd14:   borrows = negative;
-      default: borrows = subtracts;
     endcase
   end
 
@@ -234,7 +228,6 @@ module passo_tracker #(
   wire [15:0] first_word;
   wire [15:0] second_word;
   reg subtracts_q;
-  reg borrows_q;  // carry into the lowest word
   reg begins_q;  // lowest word
   reg no_first_q;
   reg no_second_q;
@@ -289,11 +282,8 @@ module passo_tracker #(
   );
 
   // ---- what is found in the sums ----
-  // Whether the sums since the lowest word are all 0, or in line 4 all `negative`: three bits at a time, put together
-  // one clock later.
-  wire           sign = negative & (line == 4'd5 || line == 4'd6);
-  wire    [17:0] differs = {2'd0, sum[15:0] ^ {16{sign}}};
-  reg     [ 5:0] same;
+  // Whether the sums since the lowest word are all 0: four bits at a time, put together one clock later.
+  reg     [ 3:0] same;
   reg            all_same;
   reg            crosses;  // the upper bit of the position below 1 changes: a step is due where that or bit 0 does
   integer        k;
@@ -301,14 +291,13 @@ module passo_tracker #(
   always @(posedge clk) begin
     slot          <= slot + 5'd1;
     subtracts_q   <= subtracts;
-    borrows_q     <= borrows;
     begins_q      <= is_first;
     no_first_q    <= no_first;
     no_second_q   <= no_second;
     copies_q      <= copies & ~(word ? writes_lower : writes_upper);
     first_term    <= (copies_q ? setting_word : first_word) & ~{16{no_first_q}};
     second_term   <= (second_word & ~{16{no_second_q}}) ^ {16{subtracts_q}};
-    carry         <= begins_q ? borrows_q : sum[16];
+    carry         <= begins_q ? subtracts_q : sum[16];
     writes_lower  <= writes_upper & ~rst;
     writes_upper  <= bus_write & (in_targets | in_axis) & ~rst;
     if (bus_write)
@@ -321,11 +310,11 @@ module passo_tracker #(
     if (line == 4'd1) wide <= sum[16];
     if (line == 4'd3) slow <= sum[16];
     if (line == 4'd4) slower <= sum[16] & ~wide;
-    if (line == 4'd6) behind <= sum[15] ^ negative;
-    if (line == 4'd8) near <= sum[15] ^ negative;
-    if (line == 4'd10) close <= sum[15] ^ negative;
+    if (line == 4'd6) behind <= sum[15];
+    if (line == 4'd8) near <= sum[15];
+    if (line == 4'd10) close <= sum[15];
     crosses <= first_term[15] ^ sum[15];
-    for (k = 0; k < 6; k = k + 1) same[k] <= differs[k*3+:3] == 3'd0;
+    for (k = 0; k < 4; k = k + 1) same[k] <= sum[k*4+:4] == 4'd0;
     all_same <= &same & (all_same | (slot[0] & ~slot[2]));  // begins in slots 11 and 25
     if (slot == 5'd15) there <= all_same & ~cleared_position;
     if (slot == 5'd27) stays_zero <= all_same;
@@ -341,6 +330,7 @@ module passo_tracker #(
   // ---- state of the axes ----
   reg [AXES-1:0] enabled;
   reg [AXES-1:0] signs;
+  reg            made;  // strobe
   reg [AXES-1:0] turns;  // v is not 0
   reg [AXES-1:0] at_target;
   reg            this_enabled;
@@ -355,6 +345,7 @@ module passo_tracker #(
     this_turns   = 1'b0;
     this_down    = 1'b0;
     for (i = 0; i < AXES; i = i + 1) begin
+      step_made[i] = made & written == i[AXIS_BITS-1:0];
       if (axis == i[AXIS_BITS-1:0]) begin
         this_enabled = enabled[i];
         this_sign    = signs[i];
@@ -373,16 +364,15 @@ module passo_tracker #(
     // settings of a turn: those of the one before are needed until it is over
     if (slot == 5'd1) begin
       negative         <= this_sign;
-      rests            <= ~this_turns;
+      rests            <= ~this_turns | clearing;
       target_down      <= this_down;
       brakes           <= ~this_enabled | brake | clearing | (hold & ~this_turns);
       cleared          <= clearing;
       cleared_position <= clears_position;
     end
-    step_made <= {AXES{1'b0}};
+    made <= turn_over & (crosses ^ second_term[0] ^ carry) & ~(clearing | cleared);
     for (j = 0; j < AXES; j = j + 1) begin
       if (turn_over && written == j[AXIS_BITS-1:0]) begin
-        step_made[j] <= (crosses ^ first_term[0] ^ sum[0]) & ~(clearing | cleared);
         signs[j]     <= negative ^ (rests & behind & ~brakes);
         turns[j]     <= ~stays_zero;
         at_target[j] <= there;
@@ -392,18 +382,22 @@ module passo_tracker #(
     moves <= turns | (enabled & ~at_target & {AXES{~brake}});
 
     if (write_enable) enabled <= bus_bits;
-    if (tick_ends && clearing) clears <= clears - 2'd1;
-    if (tick_ends && clears == 2'd1) clears_position <= 1'b0;
+    if (tick_ends) begin
+      clearing        <= clears_again;
+      clears_again    <= 1'b0;
+      clears_position <= clears_position & clears_again;
+    end
     if (halt || zero || rst) begin
-      enabled <= {AXES{1'b0}};
-      clears  <= 2'd2;
+      enabled      <= {AXES{1'b0}};
+      clearing     <= 1'b1;
+      clears_again <= 1'b1;
     end
     if (zero || rst) clears_position <= 1'b1;
     if (rst) begin
       signs     <= {AXES{1'b0}};
       turns     <= {AXES{1'b0}};
       at_target <= {AXES{1'b0}};
-      step_made <= {AXES{1'b0}};
+      made      <= 1'b0;
       moves     <= {AXES{1'b0}};
     end
   end
