@@ -51,7 +51,8 @@ module passo_tracker #(
   // axes
   input  wire [AXES-1:0] path_down,    // the last line that moved the axis went down
   output reg  [AXES-1:0] step_made,    // strobes: a step is due
-  output reg             step_down,    // its direction: 1 = negative
+  output reg             made,         // one of them is
+  output wire            step_down,    // its direction: 1 = negative
   output reg  [AXES-1:0] moves         // the tracker moves, or is about to
 );
 
@@ -237,6 +238,7 @@ module passo_tracker #(
   wire [16:0] sum = {1'b0, first_term} + {1'b0, second_term} + {16'd0, carry};
   wire [2:0] axis_padded = {{(3 - AXIS_BITS) {1'b0}}, axis};
   wire [7:0] place = {{(3 - AXIS_BITS) {1'b0}}, written, result, word ^ copied};
+  wire [2:0] number_padded = {{(3 - AXIS_BITS) {1'b0}}, number[AXIS_BITS-1:0]};
   wire host_reads = line == 4'd10;
 
   passo_memory #(
@@ -259,7 +261,7 @@ module passo_tracker #(
     .DATA_REGISTER(0)
   ) u_first (
     .clk          (clk),
-    .write        (~rst),
+    .write        (1'b1),
     .write_address(place),
     .write_data   (sum[15:0]),
     .read_address ({axis_padded, first, word ^ copies}),
@@ -273,10 +275,10 @@ module passo_tracker #(
     .DATA_REGISTER(0)
   ) u_second (
     .clk          (clk),
-    .write        (~rst),
+    .write        (1'b1),
     .write_address(place),
     .write_data   (sum[15:0]),
-    .read_address ({host_reads ? number : axis_padded, second, word}),
+    .read_address ({host_reads ? number_padded : axis_padded, second, word}),
     .load         (1'b1),
     .read_data    (second_word)
   );
@@ -330,7 +332,6 @@ module passo_tracker #(
   // ---- state of the axes ----
   reg [AXES-1:0] enabled;
   reg [AXES-1:0] signs;
-  reg            made;  // strobe
   reg [AXES-1:0] turns;  // v is not 0
   reg [AXES-1:0] at_target;
   reg            this_enabled;
@@ -355,6 +356,8 @@ module passo_tracker #(
     end
   end
 
+  assign step_down = negative;  // still of the turn that is over
+
   wire    turn_over = slot == 5'd0;  // the sum of the lowest whole step of the position
   reg     write_enable;
   reg     read_state;
@@ -378,7 +381,6 @@ module passo_tracker #(
         at_target[j] <= there;
       end
     end
-    if (turn_over) step_down <= negative;
     moves <= turns | (enabled & ~at_target & {AXES{~brake}});
 
     if (write_enable) enabled <= bus_bits;
@@ -412,9 +414,8 @@ module passo_tracker #(
   assign tracker_half  = second_word;
 
   always @(posedge clk) begin
-    in_targets <= select && bus_address[7:4] == CHANNEL_TRACKER_TARGET_BASE[7:4] && {1'b0, number} < AXES[3:0];
-    in_axis    <= select && bus_address[7:6] == CHANNEL_AXIS_BASE[7:6] && bus_address[2:1] == AXIS_TRACKER_SPEED[2:1]
-                  && {1'b0, bus_address[5:3]} < AXES[3:0];
+    in_targets <= select && bus_address[7:4] == CHANNEL_TRACKER_TARGET_BASE[7:4];
+    in_axis    <= select && bus_address[7:6] == CHANNEL_AXIS_BASE[7:6] && bus_address[2:1] == AXIS_TRACKER_SPEED[2:1];
     in_state <= select && bus_address[7:1] == CHANNEL_TRACKER_ENABLE[7:1];
     of_tracker <= select && bus_address[7:3] == CHANNEL_TRACKER_POSITION_BASE[7:3];
     write_enable <= bus_write && in_state && !number[0];

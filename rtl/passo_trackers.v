@@ -42,6 +42,7 @@ module passo_trackers #(
 
   wire [AXES-1:0] went_down;
   wire [AXES-1:0] step_made;
+  wire            made;
   wire            step_down;
   wire [AXES-1:0] moves;
   wire [AXES-1:0] owes;
@@ -49,7 +50,7 @@ module passo_trackers #(
   reg path_runs_q;
 
   always @(posedge clk) begin
-    busy        <= ~rst & ((moves | owes | step_made) != {AXES{1'b0}});
+    busy        <= ~rst & (made | ((moves | owes) != {AXES{1'b0}}));
     path_runs_q <= ~rst & path_runs;
   end
 
@@ -74,6 +75,7 @@ module passo_trackers #(
     .hold       (hold),
     .path_down  (went_down),
     .step_made  (step_made),
+    .made       (made),
     .step_down  (step_down),
     .moves      (moves)
   );
