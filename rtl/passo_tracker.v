@@ -36,24 +36,24 @@ module passo_tracker #(
   input  wire            bus_write,
   input  wire            bus_read,
   input  wire            select,
-  input  wire [     7:0] bus_address,  // within the channel
-  input  wire [AXES-1:0] bus_bits,     // lower bits of the data
-  input  wire [    15:0] bus_half,     // one clock late the upper half of the data, then the lower one
+  input  wire [     7:0] bus_address,    // within the channel
+  input  wire [AXES-1:0] bus_bits,       // lower bits of the data
+  input  wire [    15:0] bus_half,       // one clock late the upper half of the data, then the lower one
   output wire [    23:0] read_data,
-  output reg             of_tracker,   // a position is addressed
+  output reg             of_tracker,     // a position is addressed
   output wire            tracker_takes,  // strobe: show its lower half, and in the next clock its upper half
   output wire [    15:0] tracker_half,
   // motion
-  input  wire            halt,         // hard stop, or stopped
-  input  wire            zero,         // strobe: only at rest
-  input  wire            brake,        // a soft stop is in progress
-  input  wire            hold,         // no motion may begin
+  input  wire            halt,           // hard stop, or stopped
+  input  wire            zero,           // strobe: only at rest
+  input  wire            brake,          // a soft stop is in progress
+  input  wire            hold,           // no motion may begin
   // axes
-  input  wire [AXES-1:0] path_down,    // the last line that moved the axis went down
-  output reg  [AXES-1:0] step_made,    // strobes: a step is due
-  output reg             made,         // one of them is
-  output wire            step_down,    // its direction: 1 = negative
-  output reg  [AXES-1:0] moves         // the tracker moves, or is about to
+  input  wire [AXES-1:0] path_down,      // the last line that moved the axis went down
+  output reg  [AXES-1:0] step_made,      // strobes: a step is due
+  output reg             made,           // one of them is
+  output wire            step_down,      // its direction: 1 = negative
+  output reg  [AXES-1:0] moves           // the tracker moves, or is about to
 );
 
   `include "passo_registers.vh"
@@ -74,7 +74,7 @@ module passo_tracker #(
   //
   //   0  w = v + a        4  d                       8  z - w                  12  t + w, t - v or t
   //   1  copies target    5                          9                         13
-  //   2  speed - v        6  z = d - t              10  copies speed or a      14  position + new v * sign, or + d * sign
+  //   2  speed - v        6  z = d - t              10  copies speed or a      14  position + new v or d, * sign
   //   3  speed - w        7                         11  new v: w, v, or v - a  15
   //
   // A slot reads its words; one clock later they are what is added, two clocks later, so one line, the sum is written:
@@ -115,13 +115,15 @@ module passo_tracker #(
   reg cleared_position;
 
   // ---- addresses ----
-  wire [3:0] from = {~negative, POSITION[2:1], line[0]};  // d: TARGET differs from the upper pair in this bit alone
-  reg  [3:0] first;
-  reg  [3:0] second;
-  reg        subtracts;
-  reg        is_first;  // the lowest word
-  reg        no_first;  // take 0
-  reg        no_second;
+  wire [3:0] from = {
+    ~negative, POSITION[2:1], line[0]
+  };  // d: TARGET differs from the upper pair in this bit alone
+  reg [3:0] first;
+  reg [3:0] second;
+  reg subtracts;
+  reg is_first;  // the lowest word
+  reg no_first;  // take 0
+  reg no_second;
 
   always @* begin
     first     = line;
@@ -142,7 +144,7 @@ module passo_tracker #(
         is_first  = ~word;
         no_second = 1'b1;
       end
-      4'd2:    first = {1'b0, LIMIT};
+      4'd2: first = {1'b0, LIMIT};
       4'd3: begin
         first    = {1'b0, LIMIT};
         second   = {~odd, VELOCITY};
@@ -204,8 +206,8 @@ module passo_tracker #(
   wire [15:0] setting_word;
 
   // ---- address of the sum: of one line before ----
-  reg [3:0] result;
-  wire copied = line == 4'd2 || line == 4'd11;
+  reg  [3:0] result;
+  wire       copied = line == 4'd2 || line == 4'd11;
 
   always @* begin
     case (line)
@@ -228,18 +230,18 @@ module passo_tracker #(
   // ---- memory ----
   wire [15:0] first_word;
   wire [15:0] second_word;
-  reg subtracts_q;
-  reg begins_q;  // lowest word
-  reg no_first_q;
-  reg no_second_q;
-  reg [15:0] first_term;
-  reg [15:0] second_term;
-  reg carry;
+  reg         subtracts_q;
+  reg         begins_q;  // lowest word
+  reg         no_first_q;
+  reg         no_second_q;
+  reg  [15:0] first_term;
+  reg  [15:0] second_term;
+  reg         carry;
   wire [16:0] sum = {1'b0, first_term} + {1'b0, second_term} + {16'd0, carry};
-  wire [2:0] axis_padded = {{(3 - AXIS_BITS) {1'b0}}, axis};
-  wire [7:0] place = {{(3 - AXIS_BITS) {1'b0}}, written, result, word ^ copied};
-  wire [2:0] number_padded = {{(3 - AXIS_BITS) {1'b0}}, number[AXIS_BITS-1:0]};
-  wire host_reads = line == 4'd10;
+  wire [ 2:0] axis_padded = {{(3 - AXIS_BITS) {1'b0}}, axis};
+  wire [ 7:0] place = {{(3 - AXIS_BITS) {1'b0}}, written, result, word ^ copied};
+  wire [ 2:0] number_padded = {{(3 - AXIS_BITS) {1'b0}}, number[AXIS_BITS-1:0]};
+  wire        host_reads = line == 4'd10;
 
   passo_memory #(
     .WIDTH        (16),
@@ -285,23 +287,23 @@ module passo_tracker #(
 
   // ---- what is found in the sums ----
   // Whether the sums since the lowest word are all 0: four bits at a time, put together one clock later.
-  reg     [ 3:0] same;
-  reg            all_same;
-  reg            crosses;  // the upper bit of the position below 1 changes: a step is due where that or bit 0 does
-  integer        k;
+  reg [3:0] same;
+  reg all_same;
+  reg crosses;  // the upper bit of the position below 1 changes: a step is due where that or bit 0 does
+  integer k;
 
   always @(posedge clk) begin
-    slot          <= slot + 5'd1;
-    subtracts_q   <= subtracts;
-    begins_q      <= is_first;
-    no_first_q    <= no_first;
-    no_second_q   <= no_second;
-    copies_q      <= copies & ~(word ? writes_lower : writes_upper);
-    first_term    <= (copies_q ? setting_word : first_word) & ~{16{no_first_q}};
-    second_term   <= (second_word & ~{16{no_second_q}}) ^ {16{subtracts_q}};
-    carry         <= begins_q ? subtracts_q : sum[16];
-    writes_lower  <= writes_upper & ~rst;
-    writes_upper  <= bus_write & (in_targets | in_axis) & ~rst;
+    slot         <= slot + 5'd1;
+    subtracts_q  <= subtracts;
+    begins_q     <= is_first;
+    no_first_q   <= no_first;
+    no_second_q  <= no_second;
+    copies_q     <= copies & ~(word ? writes_lower : writes_upper);
+    first_term   <= (copies_q ? setting_word : first_word) & ~{16{no_first_q}};
+    second_term  <= (second_word & ~{16{no_second_q}}) ^ {16{subtracts_q}};
+    carry        <= begins_q ? subtracts_q : sum[16];
+    writes_lower <= writes_upper & ~rst;
+    writes_upper <= bus_write & (in_targets | in_axis) & ~rst;
     if (bus_write)
       host_place <= in_axis ? {bus_address[5:3], 1'b1, number[0]} : {number, 1'b0, bus_address[3]};
     if (turn_ends) axis <= axis + 1'b1;
@@ -423,8 +425,8 @@ module passo_tracker #(
     takes_upper <= takes_lower;
 
     if (rst) begin
-      write_enable  <= 1'b0;
-      read_state    <= 1'b0;
+      write_enable <= 1'b0;
+      read_state   <= 1'b0;
     end
   end
 
