@@ -14,6 +14,7 @@ from cocotb_tests.helpers.runner import (
     WITH_ENCODERS,
     WITH_INPUTS,
     WITH_OUTPUTS,
+    WITH_TRACKED,
     WITH_TRACKERS,
     run,
     skip_icarus,
@@ -40,6 +41,7 @@ MODULES = {
     "core_encoders": WITH_ENCODERS,  # following error, threading
     "core_outputs": WITH_OUTPUTS,  # outputs bound to the path
     "core_trackers": WITH_TRACKERS,  # a second hand on every axis
+    "core_tracked": WITH_TRACKED,  # axes without lines
     "core_machine": WITH_ALL,  # what they do to each other
 }
 

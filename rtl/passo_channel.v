@@ -17,6 +17,7 @@ module passo_channel #(
   parameter            ENCODERS        = 0,
   parameter            OUTPUTS         = 0,
   parameter            TRACKERS        = 0,
+  parameter            TRACKED         = 0,  // the last axes have no lines
   parameter [AXES-1:0] STEP_RESET      = 0,
   parameter [AXES-1:0] DIR_RESET       = 0,
   parameter [AXES-1:0] ENABLE_RESET    = 0
@@ -88,6 +89,8 @@ module passo_channel #(
 
   `include "passo_registers.vh"
 
+  localparam LINED = AXES - TRACKED;  // axes that lines move
+
   // registers
   wire            select_line_queue;
   wire            select_ramp_queue;
@@ -132,12 +135,15 @@ module passo_channel #(
   wire        substep;
 
   // lines
-  wire            line_valid;
-  wire            line_endless;
-  wire            line_ended;
-  wire            line_underrun;
-  wire [AXES-1:0] path_steps;
-  wire [AXES-1:0] path_directions;
+  wire             line_valid;
+  wire             line_endless;
+  wire             line_ended;
+  wire             line_underrun;
+  wire [ AXES-1:0] path_steps;
+  wire [ AXES-1:0] path_directions;
+  wire [LINED-1:0] lined_steps;
+  wire [LINED-1:0] lined_directions;
+  wire [LINED-1:0] lined_moves;
 
   // trackers
   wire            tracking;
@@ -213,6 +219,11 @@ module passo_channel #(
 
   assign incomplete = line_incomplete | ramp_incomplete;
   assign moving     = moves_path | tracking;
+
+  // Axes without lines have no steps of a line.
+  assign path_steps      = {{TRACKED{1'b0}}, lined_steps};
+  assign path_directions = {{TRACKED{1'b0}}, lined_directions};
+  assign line_moves      = {{TRACKED{1'b0}}, lined_moves};
 
   // Unselected targets drive 0.
   assign bad_value = inputs_bad_value | outputs_bad_value;
@@ -388,7 +399,7 @@ module passo_channel #(
   );
 
   passo_lines #(
-    .AXES          (AXES),
+    .AXES          (LINED),
     .DEPTH_LOG2    (LINE_QUEUE_LOG2),
     .STEPS_REGISTER(STEPS_REGISTER),
     .OUTPUTS       (OUTPUTS),
@@ -415,9 +426,9 @@ module passo_channel #(
     .ended       (line_ended),
     .underrun    (line_underrun),
     .substep     (substep),
-    .step_request(path_steps),
-    .directions  (path_directions),
-    .moves       (line_moves),
+    .step_request(lined_steps),
+    .directions  (lined_directions),
+    .moves       (lined_moves),
     .line_begins (line_begins),
     .line_substep(line_substep),
     .output_word (output_word)

@@ -22,6 +22,7 @@ module passo_core #(
   parameter integer ENCODERS = 0,  // 1: encoders
   parameter integer OUTPUTS = 0,  // 1: outputs bound to the path
   parameter integer TRACKERS = 0,  // 1: a second hand on every axis
+  parameter integer TRACKED = 0,  // the last axes of a channel have no lines: only their trackers move them
   parameter [31:0] CLOCK_HZ = 0,  // of clk, for the host to read; 0: not told
   parameter [31:0] BUILD = 0,  // identifies the bitstream, for the host to read
   // pin levels from configuration until the host writes polarities; bit channel * AXES + axis
@@ -92,6 +93,9 @@ module passo_core #(
     end
     if (TRACKERS < 0 || TRACKERS > 1) begin : g_bad_trackers
       passo_parameter_TRACKERS_must_be_0_or_1 u_error ();
+    end
+    if (TRACKED < 0 || TRACKED >= AXES || (TRACKED != 0 && TRACKERS == 0)) begin : g_bad_tracked
+      passo_parameter_TRACKED_must_be_below_AXES_with_TRACKERS u_error ();
     end
     if (RAMP_QUEUE_LOG2 < 2 || RAMP_QUEUE_LOG2 > 8) begin : g_bad_ramp_queue
       passo_parameter_RAMP_QUEUE_LOG2_must_be_2_to_8 u_error ();
@@ -249,6 +253,7 @@ module passo_core #(
     .ENCODERS       (ENCODERS),
     .OUTPUTS        (OUTPUTS),
     .TRACKERS       (TRACKERS),
+    .TRACKED        (TRACKED),
     .CLOCK_HZ       (CLOCK_HZ),
     .BUILD          (BUILD)
   ) u_registers (
@@ -340,6 +345,7 @@ module passo_core #(
         .ENCODERS       (ENCODERS),
         .OUTPUTS        (OUTPUTS),
         .TRACKERS       (TRACKERS),
+        .TRACKED        (TRACKED),
         .STEP_RESET     (STEP_RESET[channel*AXES+:AXES]),
         .DIR_RESET      (DIR_RESET[channel*AXES+:AXES]),
         .ENABLE_RESET   (ENABLE_RESET[channel*AXES+:AXES])

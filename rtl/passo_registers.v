@@ -19,6 +19,7 @@ module passo_registers #(
   parameter        ENCODERS        = 0,
   parameter        OUTPUTS         = 0,
   parameter        TRACKERS        = 0,
+  parameter        TRACKED         = 0,
   parameter [31:0] CLOCK_HZ        = 0,
   parameter [31:0] BUILD           = 0
 ) (
@@ -50,7 +51,7 @@ module passo_registers #(
     ENCODERS[0],
     INPUTS[0],
     RAMP_QUEUE_LOG2[4:0],
-    3'd0,
+    TRACKED[2:0],
     LINE_QUEUE_LOG2[4:0],
     TRACKERS[0],
     2'd0,

@@ -17,6 +17,7 @@ module passo_spi_top #(
   parameter integer ENCODERS = 0,  // 1: encoders
   parameter integer OUTPUTS = 0,  // 1: outputs bound to the path
   parameter integer TRACKERS = 0,  // 1: a second hand on every axis
+  parameter integer TRACKED = 0,  // the last axes of a channel have no lines: only their trackers move them
   parameter [31:0] CLOCK_HZ = 0,  // of clk, for the host to read; 0: not told
   parameter [31:0] BUILD = 0,  // identifies the bitstream, for the host to read
   // pin levels from configuration until the host writes polarities; bit channel * AXES + axis
@@ -92,6 +93,7 @@ module passo_spi_top #(
     .ENCODERS       (ENCODERS),
     .OUTPUTS        (OUTPUTS),
     .TRACKERS       (TRACKERS),
+    .TRACKED        (TRACKED),
     .CLOCK_HZ       (CLOCK_HZ),
     .BUILD          (BUILD),
     .STEP_RESET     (STEP_RESET),

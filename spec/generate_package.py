@@ -29,6 +29,7 @@ PARAMETERS = {
     "ENCODERS": "1: encoders",
     "OUTPUTS": "1: outputs bound to the path",
     "TRACKERS": "1: a second hand on every axis",
+    "TRACKED": "The last axes of a channel, without lines, 0 .. AXES - 1",
     "CLOCK_HZ": "Clock in Hz, for the host to read; 0: not told",
     "BUILD": "Identifier of the bitstream, for the host to read",
     "STEP_RESET": "Polarity of each STEP from configuration on",

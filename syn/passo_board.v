@@ -23,6 +23,7 @@ module passo_board #(
   parameter            ENCODERS         = 0,
   parameter            OUTPUTS          = 0,
   parameter            TRACKERS         = 0,
+  parameter            TRACKED          = 0,
   parameter            OUTPUT_PINS      = 8,             // of the core's 8 outputs
   parameter [AXES-1:0] LOW_AT_HOME      = {AXES{1'b0}},  // axes whose limit is at the pin of their home
   parameter [AXES-1:0] HIGH_AT_HOME     = {AXES{1'b0}},
@@ -131,6 +132,7 @@ module passo_board #(
     .ENCODERS      (ENCODERS),
     .OUTPUTS       (OUTPUTS),
     .TRACKERS      (TRACKERS),
+    .TRACKED       (TRACKED),
     .CLOCK_HZ      (CLOCK_HZ),
     .BUILD         (BUILD),
     .STEP_RESET    (STEP_RESET),

@@ -119,10 +119,20 @@ def test_parts_are_chosen_by_name(made_up: Path, capsys: pytest.CaptureFixture[s
     assert "encoders.encoder_index: 3 pins; must be at most 2" in capsys.readouterr().err
 
 
+def test_axes_without_lines(made_up: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The core gets them; they need trackers, and an axis with lines beside them."""
+    assert synth.main(["--board", "made_up", "--tracked", "1"]) == 2
+    assert "axes without lines need trackers: PARTS=trackers" in capsys.readouterr().err
+    assert synth.main(["--board", "made_up", "--parts", "trackers", "--tracked", "2"]) == 2
+    assert "axes without lines: 2 of 2; must be 0 to 1" in capsys.readouterr().err
+    made, _ = generate(board("made_up"), tmp_path, 2, None, ("trackers",), "made_up", {"TRACKED": 1})
+    assert made.parameters["TRACKED"] == 1
+
+
 @each_board
 def test_core_gets_the_parameters_of_its_device(board: Board) -> None:
     """Through the top; and in the report."""
-    for name in board.device.core:
+    for name in (*board.device.core, "TRACKERS", "TRACKED"):
         assert re.search(rf"\.{name}\s*\({name}\)", TOP.read_text())
     parameters = report.core(board.device, (1, board.axes)).parameters
     assert parameters == {"CHANNELS": 1, "AXES": board.axes, **board.device.core}

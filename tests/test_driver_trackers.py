@@ -218,6 +218,38 @@ def test_what_a_tracker_cannot_do_is_refused() -> None:
     assert wire.counted()[1] == [1000, 0, 0, 0]
 
 
+def test_axes_without_lines() -> None:
+    """Moves cannot have steps of them; their trackers move them beside a path, and they stop with it."""
+    wire = Wire(Parameters(axes=5, inputs=1, outputs=1, trackers=1, tracked=2))
+    driver = open_driver(wire)
+    driver.call("configure_motion", wire.clock_hz // 1000, wire.clock_hz // 1000, 0)
+    assert (driver.c.axes, driver.c.machine.axes) == (5, 3)
+    tracks = [track(axis, speed=20_000) for axis in (3, 4)]
+    for one in tracks:
+        driver.call("configure_tracker", one)
+    for one, target in zip(tracks, (700, -900), strict=True):
+        driver.call("track_to", one, target)
+    driver.call("move_by_speed", by_speed([300, -200, 100, 0, 0]))
+    for axis in (3, 4):
+        steps = [0] * 5
+        steps[axis] = 5
+        assert error_of(driver, "move_by_speed", by_speed(steps)) == "ARGUMENT"
+        assert error_of(driver, "move_to_by_speed", 1 << axis, by_speed(steps)) == "ARGUMENT"
+    finish(driver, wire)
+    for axis in (3, 4):
+        settle(driver, wire, axis)
+    assert list(driver.positions()) == [300, -200, 100, 0, 0]
+    assert [reading(driver, axis).position for axis in range(5)] == [0, 0, 0, 700, -900]
+    assert wire.counted()[1] == [300, -200, 100, 700, -900]
+    driver.call("track_to", tracks[0], 5000)
+    wire.run(wire.clock_hz // 1000)
+    driver.call("abort")
+    wire.run(wire.clock_hz // 1000)
+    stopped = wire.counted()[1]
+    wire.run(wire.clock_hz // 10)
+    assert 700 < stopped[3] < 5000 and wire.counted()[1] == stopped
+
+
 def test_targets_of_a_table() -> None:
     """As exact fractions say, halves up; beyond its ends those of the ends, at any position."""
     rng = random.Random(f"table {SEED}")

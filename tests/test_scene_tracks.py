@@ -51,11 +51,11 @@ def least_clocks(steps: int) -> float:
     return (steps / SPEED + SPEED / ACCELERATION) * CLOCK_HZ
 
 
-@pytest.mark.parametrize("engine", ["model", "both"])
-def test_a_motor_beside_the_path(tmp_path: Path, engine: str) -> None:
-    """It lands on each target in the least time; the path does not know of it."""
+@pytest.mark.parametrize(("engine", "tracked"), [("model", 0), ("both", 0), ("both", 1)])
+def test_a_motor_beside_the_path(tmp_path: Path, engine: str, tracked: int) -> None:
+    """It lands on each target in the least time; the path does not know of it, nor has lines of it."""
     tracks = track("axis = 2\ntarget = 200\nposition = 300") + track("axis = 2\ntarget = -40\ntime = 0.3", "")
-    run = play(tmp_path, tracks + PATH, engine)
+    run = play(tmp_path, machine(f"tracked = {tracked}") + tracks + PATH, engine)
     assert run.problems() == [] and run.machine == [0, 0, -40]
     clocks, directions = run.steps(2)
     assert directions.tolist() == [1] * 200 + [-1] * 240
@@ -253,6 +253,8 @@ BAD = [
     (track("") + track(AT + "speed = 4999", ""), "track 2: speed is another one than in track 1"),
     (track("") + track(AT + "acceleration = 9", ""), "track 2: acceleration is another one than in track 1"),
     (track(AT + "targte = 5"), "track 1: unknown key 'targte'; did you mean target"),
+    (machine("tracked = 2"), "machine: tracked must be 0 to 1: lines move an axis at least"),
+    (machine("tracked = 1"), "move 1: steps of axis 1 must be 0: it has no lines, as tracked says"),
     ("track = 3\n", "track must be an array of tables"),
     (track("") + event(AT + 'do = "untrack"\naxis = 1'), r"event 1: axis 1 has no target: \[\[track"),
     (event(AT + 'do = "track"'), "event 1: do must be one of .*, not 'track'"),

@@ -17,7 +17,7 @@ from passo_fpga.devices import DEVICES, GOWIN
 from passo_fpga.families.gowin import functions as gowin_functions
 from passo_fpga.families.gowin import held_pins
 from passo_fpga.flow import CROWDED, Placed, _sites, _too_large, count
-from passo_fpga.parts import WITH_PINS
+from passo_fpga.parts import PORTS
 from passo_fpga.split import difference
 
 BOARDS = list(boards().values())
@@ -299,13 +299,14 @@ def test_cost_of_a_part(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None
 
     def cells(design: Design) -> dict[str, int]:
         axes = design.parameters["AXES"]
-        part = 50 + 20 * axes if any(name.upper() in design.parameters for name in WITH_PINS) else 0
-        return dict.fromkeys(parts_report.COLUMNS, 1000 + 300 * axes + part)
+        part = 50 + 20 * axes if any(name.upper() in design.parameters for name in PORTS) else 0
+        lineless = 130 * design.parameters.get("TRACKED", 0)
+        return dict.fromkeys(parts_report.COLUMNS, 1000 + 300 * axes + part - lineless)
 
     monkeypatch.setattr(parts_report, "cells", cells)
     found = {
-        "sizes": [parts_report.row(DEVICES["hx8k"], part) for part in WITH_PINS],
-        "clocks": [{"part": part, "size": 3456, "f_max": [100.0, 0.0, 120.0]} for part in WITH_PINS],
+        "sizes": [parts_report.row(DEVICES["hx8k"], part) for part in parts_report.PARTS],
+        "clocks": [{"part": part, "size": 3456, "f_max": [100.0, 0.0, 120.0]} for part in ("", *PORTS)],
     }
     assert found["sizes"][0]["once"]["LUT"] == 50 and found["sizes"][0]["per_axis"]["LUT"] == 20
     page = tmp_path / "integration.md"
@@ -315,7 +316,8 @@ def test_cost_of_a_part(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None
     text = page.read_text()
     assert "old" not in text and text.startswith("before\n") and text.endswith("after\n")
     assert "| `ENCODERS` | iCE40-HX8K ct256 | 50 + 20 |" in text
-    assert "| `OUTPUTS` | 3,456 LC | – | 100.0 |" in text
+    assert "| `TRACKED` | iCE40-HX8K ct256 | 0 + 190 |" in text
+    assert "| `OUTPUTS` | 3,456 LC | – | 100.0 |" in text and "| none | 3,456 LC | – | 100.0 |" in text
 
 
 def test_difference_of_two_designs() -> None:

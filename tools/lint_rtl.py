@@ -55,7 +55,10 @@ def _high(axes: int) -> Parameters:
 LOWEST: Parameters = {name: low for name, (low, _) in ENDS.items()}
 HIGHEST: Parameters = {name: high for name, (_, high) in ENDS.items()} | _high(8 * 8)
 FAR_APART: list[Parameters] = [{}, LOWEST, HIGHEST]
-CORNERS = [*FAR_APART, *({name: end} for name, ends in ENDS.items() for end in ends), _high(AXES)]
+TRACKED: list[Parameters] = [
+    {"AXES": axes, "TRACKERS": 1, "TRACKED": tracked} for axes, tracked in ((8, 7), (8, 1), (AXES, 3))
+]
+CORNERS = [*FAR_APART, *({name: end} for name, ends in ENDS.items() for end in ends), _high(AXES), *TRACKED]
 
 
 def read_with_verilator(rtl: Path, top: str, parameters: Parameters) -> str:

@@ -11,15 +11,21 @@ static unsigned depth(const struct passo_parameters *parameters)
 	return 1u << parameters->line_queue_log2;
 }
 
+/* Axes that lines move. */
+static unsigned lined(const struct passo_parameters *parameters)
+{
+	return (unsigned)parameters->axes - parameters->tracked;
+}
+
 /* Of a line: control, M, N_i, and with OUTPUTS its output word. */
 static unsigned last_index(const struct passo_parameters *parameters)
 {
-	return INDEX_STEPS + parameters->axes - 1u + parameters->outputs;
+	return INDEX_STEPS + lined(parameters) - 1u + parameters->outputs;
 }
 
 static bool is_output(const struct passo_parameters *parameters, unsigned index)
 {
-	return index == (unsigned)INDEX_STEPS + parameters->axes;
+	return index == (unsigned)INDEX_STEPS + lined(parameters);
 }
 
 static uint16_t wrap(unsigned line, const struct passo_parameters *parameters)
@@ -31,7 +37,7 @@ uint8_t passo_line_queue_refusal(const struct passo_line_queue *queue,
     const struct passo_parameters *parameters, const struct passo_bus *bus, bool blocked)
 {
 	const uint32_t defined = passo_pack_line_control(&(struct passo_line_control){
-	    .directions = (uint8_t)((1u << parameters->axes) - 1u), .endless = true, .last = true});
+	    .directions = (uint8_t)((1u << lined(parameters)) - 1u), .endless = true, .last = true});
 
 	if (blocked)
 		return PASSO_VERDICT_BUSY;
@@ -110,7 +116,7 @@ static void read_memory(struct passo_line_queue *queue, const struct passo_param
 	}
 	queue->directions = current->directions;
 	queue->output_word = queue->output_words[queue->current_line];
-	for (unsigned axis = 0; axis < parameters->axes; axis++)
+	for (unsigned axis = 0; axis < lined(parameters); axis++)
 		queue->steps[axis] = current->steps[axis];
 }
 

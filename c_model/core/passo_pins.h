@@ -18,6 +18,7 @@ struct passo_parameters {
 	uint8_t encoders; /* ENCODERS, 0 or 1 */
 	uint8_t outputs; /* OUTPUTS, 0 or 1: outputs bound to the path */
 	uint8_t trackers; /* TRACKERS, 0 or 1: a second hand on every axis */
+	uint8_t tracked; /* TRACKED, 0 .. AXES - 1: the last axes, which have no lines: only their trackers move them */
 	uint32_t clock_hz; /* CLOCK_HZ, what the host reads as the clock, in Hz; 0: not told */
 	uint32_t build; /* BUILD, what the host reads as the identifier of the bitstream */
 	/* initial pin levels, bit channel * AXES + axis */
@@ -105,6 +106,7 @@ enum passo_input {
     X(encoders, ENCODERS) \
     X(outputs, OUTPUTS) \
     X(trackers, TRACKERS) \
+    X(tracked, TRACKED) \
     X(clock_hz, CLOCK_HZ) \
     X(build, BUILD)
 

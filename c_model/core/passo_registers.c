@@ -57,6 +57,7 @@ static uint32_t parameters_word(const struct passo_parameters *parameters)
 	    .encoders = parameters->encoders,
 	    .outputs = parameters->outputs,
 	    .trackers = parameters->trackers,
+	    .tracked = parameters->tracked,
 	});
 }
 

@@ -209,6 +209,7 @@ struct passo_parameters_word {
 	bool    encoders;        /* ENCODERS. */
 	bool    inputs;          /* INPUTS. */
 	uint8_t ramp_queue_log2; /* RAMP_QUEUE_LOG2. */
+	uint8_t tracked;         /* TRACKED. */
 	uint8_t line_queue_log2; /* LINE_QUEUE_LOG2. */
 	bool    trackers;        /* TRACKERS. */
 	uint8_t tick_log2;       /* TICK_LOG2. */
@@ -222,6 +223,7 @@ static inline uint32_t passo_pack_parameters(const struct passo_parameters_word 
 	     | ((uint32_t)word->encoders & 0x1u) << 30
 	     | ((uint32_t)word->inputs & 0x1u) << 29
 	     | ((uint32_t)word->ramp_queue_log2 & 0x1Fu) << 24
+	     | ((uint32_t)word->tracked & 0x7u) << 21
 	     | ((uint32_t)word->line_queue_log2 & 0x1Fu) << 16
 	     | ((uint32_t)word->trackers & 0x1u) << 15
 	     | ((uint32_t)word->tick_log2 & 0x1Fu) << 8
@@ -236,6 +238,7 @@ static inline struct passo_parameters_word passo_unpack_parameters(uint32_t word
 	    .encoders = (word >> 30 & 0x1u) != 0u,
 	    .inputs = (word >> 29 & 0x1u) != 0u,
 	    .ramp_queue_log2 = (uint8_t)(word >> 24 & 0x1Fu),
+	    .tracked = (uint8_t)(word >> 21 & 0x7u),
 	    .line_queue_log2 = (uint8_t)(word >> 16 & 0x1Fu),
 	    .trackers = (word >> 15 & 0x1u) != 0u,
 	    .tick_log2 = (uint8_t)(word >> 8 & 0x1Fu),

@@ -39,6 +39,7 @@ architecture rtl of motion_top is
       \ENCODERS\        : natural := 0;
       \OUTPUTS\         : natural := 0;
       \TRACKERS\        : natural := 0;
+      \TRACKED\         : natural := 0; -- the last axes have no lines
       \CLOCK_HZ\        : natural := 0; -- the host can read it
       \BUILD\           : natural := 0; -- and this
       \STEP_RESET\      : natural := 0; -- bit channel * \AXES\ + axis

@@ -283,12 +283,12 @@ static enum passo_error configure(void)
  * wire; see passo_frame.h. */
 static unsigned turns_of(long period)
 {
-	const unsigned all = passo_machine(&passo)->axes;
+	const unsigned all = passo_axes(&passo);
 	const unsigned spaced = servo.options.buffer > 0 ? servo.options.buffer : PASSO_SERVO_BUFFER;
 	const double most = (double)period * NS * linux_host.speed_hz / (WORD_BITS * SHARE);
 	const double read =
 	    all + PASSO_FRAME_OVERHEAD + (inputs > 0 ? INPUT_WORDS + PASSO_FRAME_OVERHEAD : 0);
-	double words = PASSO_LINE_WORDS(all) + outputs + PASSO_FRAME_OVERHEAD;
+	double words = PASSO_LINE_WORDS(passo_machine(&passo)->axes) + outputs + PASSO_FRAME_OVERHEAD;
 
 	words += (double)(PASSO_RAMP_WORDS + PASSO_FRAME_OVERHEAD) / spaced + LOOK_WORDS;
 	if (has_encoders)
@@ -610,7 +610,7 @@ static bool encoder_is_wanted(uint8_t axis)
 /* false: said what is wrong. */
 static bool check_encoders(void)
 {
-	const uint8_t there = passo_machine(&passo)->axes;
+	const uint8_t there = passo_axes(&passo);
 
 	for (const char *text = encoders; *text; text++) {
 		const bool is_digit = (text - encoders) % 2 == 0;

@@ -58,7 +58,8 @@ class Parameters(CoreParameters):
         reset = "_reset{:x}_{:x}_{:x}".format(*levels) if any(levels) else ""
         parts = "".join(f"_{part}" for part in PARTS if getattr(self, part))
         told = f"_{self.clock_hz}Hz_{self.build:x}" if self.clock_hz or self.build else ""
-        return f"{self.channels}x{self.axes}_{self.tick_log2}_{queues}{parts}{reset}{told}"
+        tracked = f"_tracked{self.tracked}" if self.tracked else ""
+        return f"{self.channels}x{self.axes}_{self.tick_log2}_{queues}{parts}{tracked}{reset}{told}"
 
     def verilog(self) -> dict[str, str]:
         """Verilog parameter names and values."""

@@ -52,12 +52,18 @@ def _parameters(options: argparse.Namespace) -> Parameters:
         raise BadInputError(f"--axes must be 1 to {AXES_MAX}, --clock 1 to {WHOLE_MAX}")
     if not 1 <= options.channels <= CHANNELS_MAX:
         raise BadInputError(f"--channels must be 1 to {CHANNELS_MAX}")
+    if options.tracked and not options.trackers:
+        raise BadInputError("--tracked needs --trackers")
+    if not 0 <= options.tracked < options.axes:
+        raise BadInputError(f"--tracked must be 0 to {options.axes - 1}: lines move an axis at least")
     return Parameters(
         channels=options.channels,
         axes=options.axes,
         inputs=int(options.inputs),
         encoders=int(options.encoders),
         outputs=int(options.outputs),
+        trackers=int(options.trackers),
+        tracked=options.tracked,
     )
 
 

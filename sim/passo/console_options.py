@@ -39,6 +39,16 @@ def add(commands: Any) -> argparse.ArgumentParser:
         "--encoders", action="store_true", help="build the core with encoders (docs/machine.md)"
     )
     console.add_argument(
+        "--trackers", action="store_true", help="build the core with trackers (docs/machine.md)"
+    )
+    console.add_argument(
+        "--tracked",
+        type=int,
+        default=0,
+        metavar="N",
+        help="the last N axes have no lines: only their trackers move them",
+    )
+    console.add_argument(
         "--encoder",
         action="append",
         default=[],

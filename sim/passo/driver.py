@@ -181,7 +181,7 @@ class Driver:
         """Steps made by each axis, all sampled at the same time."""
         positions = ffi().new("int32_t[8]")
         self.call("positions", positions)
-        return list(positions[0 : self.c.machine.axes])
+        return list(positions[0 : self.c.axes])
 
     def snapshot(self) -> Any:
         """Read the present `struct passo_snapshot`."""

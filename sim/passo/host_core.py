@@ -216,7 +216,7 @@ class LinuxCore(DriverCore):
     def __init__(self, device: str, file: MachineFile, speed_hz: int = 0):
         self.driver = LinuxDriver(device, len(file.motors), file.clock_hz, speed_hz)
         machine = self.driver.c.machine
-        self.parameters = Parameters(axes=machine.axes, tick_log2=machine.tick_log2)
+        self.parameters = Parameters(axes=self.driver.c.axes, tick_log2=machine.tick_log2)
         self.matched_edges: int | None = None
 
     def begin(self) -> None:

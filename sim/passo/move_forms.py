@@ -379,6 +379,7 @@ MACHINES = {
             Key("stop_time", "time", "stop_time", factor="clock_hz", optional=True),
             Key("start", "places", None, optional=True),
             Key("steps_per_mm", "scales", None, optional=True),
+            Key("tracked", "whole", "tracked", default=0, low=0, high=7),
             Key("seed", "whole", "seed", default=1, low=0, high=WHOLE_MAX),
             Key("pwm", "number", "pwm", factor=UNIT_Q32, default=20000),
             Key("lag", "time", "lag", factor="clock_hz", default=0),
@@ -816,6 +817,7 @@ class MachineSettings:
     stop_time: Fraction | None
     start: tuple[int, ...] | None
     steps_per_mm: tuple[Fraction, ...] | None
+    tracked: int
     seed: int
     pwm: Fraction
     lag: Fraction

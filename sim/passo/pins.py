@@ -26,6 +26,8 @@ class CoreParameters:
     outputs: int = 0
     # TRACKERS, 0 or 1: a second hand on every axis
     trackers: int = 0
+    # TRACKED, 0 .. AXES - 1: the last axes, which have no lines: only their trackers move them
+    tracked: int = 0
     # CLOCK_HZ, what the host reads as the clock, in Hz; 0: not told
     clock_hz: int = 0
     # BUILD, what the host reads as the identifier of the bitstream

@@ -172,6 +172,7 @@ class ParametersWord(Word):
     encoders: bool = bits(30, 1, "r")  # ENCODERS.
     inputs: bool = bits(29, 1, "r")  # INPUTS.
     ramp_queue_log2: int = bits(24, 5, "r")  # RAMP_QUEUE_LOG2.
+    tracked: int = bits(21, 3, "r")  # TRACKED.
     line_queue_log2: int = bits(16, 5, "r")  # LINE_QUEUE_LOG2.
     trackers: bool = bits(15, 1, "r")  # TRACKERS.
     tick_log2: int = bits(8, 5, "r")  # TICK_LOG2.
@@ -530,6 +531,8 @@ PARAMETERS_TRACKERS_LSB = 15
 PARAMETERS_TRACKERS_BITS = 1
 PARAMETERS_LINE_QUEUE_LOG2_LSB = 16
 PARAMETERS_LINE_QUEUE_LOG2_BITS = 5
+PARAMETERS_TRACKED_LSB = 21
+PARAMETERS_TRACKED_BITS = 3
 PARAMETERS_RAMP_QUEUE_LOG2_LSB = 24
 PARAMETERS_RAMP_QUEUE_LOG2_BITS = 5
 PARAMETERS_INPUTS_LSB = 29

@@ -57,7 +57,7 @@ class Scene:
         self.inputs: list[np.ndarray] = []
         self.samples: list[tuple[Any, ...]] = []
         self.tracked: list[tuple[int, list[int]]] = []
-        self.targets = dict.fromkeys(self.setup.tracked, 0)
+        self.targets = dict.fromkeys(self.setup.with_trackers, 0)
         self.following: dict[int, MachineTrack] = {}  # targets in force, by axis
         self.stops: list[Stop] = []
         self.latches: list[Latch] = []
@@ -284,7 +284,7 @@ class Scene:
         self.active_at = self.engine.clock
         while True:
             self._look_at_trackers()
-            readings = [self.driver.tracker(axis) for axis in self.setup.tracked]
+            readings = [self.driver.tracker(axis) for axis in self.setup.with_trackers]
             if not any(reading.moves or (reading.enabled and not reading.at_target) for reading in readings):
                 break
             if self.engine.clock - self.active_at > GIVE_UP_SECONDS * self.clock_hz:
@@ -292,7 +292,7 @@ class Scene:
             self._advance(self.poll_clocks)
         return [
             Tracker(axis, reading.position, self.targets[axis], reading.at_target, reading.enabled)
-            for axis, reading in zip(self.setup.tracked, readings, strict=True)
+            for axis, reading in zip(self.setup.with_trackers, readings, strict=True)
         ]
 
     def _happened(self, number: int) -> Happened:

@@ -69,7 +69,7 @@ def scene_data(channels: Channels, run: SceneRun, engine: str) -> tuple[dict[str
             "signals": signals,
             "power": _power(run),
             "encoders": [_encoder(run, number) for number in range(len(run.setup.encoders))],
-            "trackers": [_tracker(run, axis) for axis in run.setup.tracked],
+            "trackers": [_tracker(run, axis) for axis in run.setup.with_trackers],
         },
     }
     packed = zlib.compress(np.concatenate([*streams, np.empty(0, np.uint8)]).tobytes(), 9)

@@ -17,10 +17,15 @@ REFERENCE_ANY = 1 << 31  # 1/2 substep per clock, the fastest
 
 def scene_parameters(channels: Channels) -> Parameters:
     """Parameters of the core used for a file with a machine."""
-    assert channels.setup
-    has_trackers = bool(channels.setup.trackers)
+    setup = channels.setup
+    assert setup
     return Parameters(
-        axes=channels.setup.core_axes, inputs=1, encoders=1, outputs=1, trackers=int(has_trackers)
+        axes=setup.core_axes,
+        inputs=1,
+        encoders=1,
+        outputs=1,
+        trackers=int(bool(setup.trackers or setup.settings.tracked)),
+        tracked=setup.core_axes - setup.lined if setup.settings.tracked else 0,
     )
 
 

@@ -163,12 +163,12 @@ class SceneRun:
     @property
     def plain_axes(self) -> list[int]:
         """Axes whose steps are those of the path alone."""
-        return [axis for axis in range(self.file.axes) if axis not in self.setup.tracked]
+        return [axis for axis in range(self.file.axes) if axis not in self.setup.with_trackers]
 
     @property
     def shown_clocks(self) -> int:
         """Clocks from the start to the end of the last motion, or of the last step of a tracker."""
-        ends = [int(self.steps(axis)[0].max(initial=0)) for axis in self.setup.tracked]
+        ends = [int(self.steps(axis)[0].max(initial=0)) for axis in self.setup.with_trackers]
         return max([self.total_clocks, *ends])
 
     def asked(self, section: Section) -> int:
@@ -190,7 +190,7 @@ class SceneRun:
         """Clock up to which the moves of a section are certainly as planned."""
         if any(track.axis == axis for track in self.setup.tracks):
             return section.begin
-        if axis not in self.setup.tracked and section.end - section.begin == sum(
+        if axis not in self.setup.with_trackers and section.end - section.begin == sum(
             plan.clocks for plan in section.plans
         ):
             return section.end

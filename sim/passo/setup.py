@@ -72,7 +72,12 @@ class Setup:
         return next(n for n in AXES_OF_CORES if n >= self.axes + bool(self.spindle))
 
     @property
-    def tracked(self) -> list[int]:
+    def lined(self) -> int:
+        """Axes that moves can have steps of: the first ones."""
+        return self.axes - self.settings.tracked
+
+    @property
+    def with_trackers(self) -> list[int]:
         """Axes whose trackers are used."""
         return [one.axis for one in self.trackers]
 

@@ -86,6 +86,7 @@ def read_setup(data: Table, moves: Sequence[Any], clock_hz: int) -> Setup | None
     if setup.has_outputs:
         check_pwm(setup.settings, clock_hz)
     for number, move in enumerate(moves, 1):
+        within(f"move {number}", lambda move=move: _check_lines(move, setup))
         if move in tasks:
             within(f"move {number}", lambda move=move: _check_task(move, setup))
     return setup
@@ -111,6 +112,8 @@ def _machine(table: object, axes: int, clock_hz: int) -> Setup:
         value = table.get(key)
         if isinstance(value, list) and len(value) != axes:
             raise BadValueError(f"{key} has {len(value)} axes, but the moves have {axes}")
+    if settings.tracked >= axes:
+        raise BadValueError(f"tracked must be 0 to {axes - 1}: lines move an axis at least")
     if (clocks := settings.filter * clock_hz) > FILTER_MAX:
         raise BadValueError(f"filter is {round(clocks)} clocks; must be at most {FILTER_MAX}")
     scales = settings.steps_per_mm or ()
@@ -222,6 +225,12 @@ def _check_fitted(role: str, axis: int, setup: Setup) -> None:
     if setup.find(role, axis) is None:
         place = role if role == "probe" else f"{role} of axis {axis}"
         raise BadValueError(f"{place} is not connected: [[machine.input]]")
+
+
+def _check_lines(move: Any, setup: Setup) -> None:
+    for axis in range(setup.lined, setup.axes):
+        if move.steps[axis]:
+            raise BadValueError(f"steps of axis {axis} must be 0: it has no lines, as tracked says")
 
 
 def _check_task(move: MoveHome | MoveProbe | MoveThread, setup: Setup) -> None:

@@ -45,6 +45,9 @@ struct passo_values {
 	uint64_t turns; /* UQ32.32 */
 	bool wait_index, endless;
 #endif
+#ifndef PASSO_WITHOUT_TRACKERS
+	struct passo_console_tracker tracker;
+#endif
 };
 
 /* Arguments of a command. */
@@ -89,7 +92,8 @@ int64_t passo_thousandths(int64_t value);
 /* Moves and rotation: passo_move_commands.c. Control and readings: passo_motion_commands.c. Settings:
  * passo_settings_commands.c. `open`, and `clear`, which can apply deferred ones: passo_opening.c. Inputs:
  * passo_input_commands.c. Homing, probing, jogging: passo_task_commands.c. Outputs: passo_output_commands.c,
- * those of a move: passo_move_outputs.c. Encoders and threads: passo_encoder_commands.c. */
+ * those of a move: passo_move_outputs.c. Encoders and threads: passo_encoder_commands.c. Trackers:
+ * passo_track_commands.c. */
 bool passo_run_move(const struct passo_call *call);
 bool passo_run_turn(const struct passo_call *call);
 bool passo_run_rpm(const struct passo_call *call);
@@ -128,6 +132,11 @@ bool passo_run_encoder(const struct passo_call *call);
 bool passo_run_encoders(const struct passo_call *call);
 bool passo_run_adopt(const struct passo_call *call);
 bool passo_run_thread(const struct passo_call *call);
+#endif
+#ifndef PASSO_WITHOUT_TRACKERS
+bool passo_run_tracker(const struct passo_call *call);
+bool passo_run_track(const struct passo_call *call);
+bool passo_run_untrack(const struct passo_call *call);
 #endif
 #ifdef PASSO_BOTH
 bool passo_run_grbl(const struct passo_call *call);

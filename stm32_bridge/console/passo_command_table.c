@@ -99,6 +99,18 @@ static const struct passo_key GOTO_KEYS[] = {
     CHANNEL,
 };
 #endif
+#ifndef PASSO_WITHOUT_TRACKERS /* for the same */
+static const struct passo_key TRACKER_KEYS[] = {
+    PASSO_VALUE("axis", axis, AXIS, NULL),
+    CHANNEL,
+    PASSO_VALUE("speed", tracker.speed, NUMBER, ""),
+    PASSO_VALUE("acceleration", tracker.acceleration, NUMBER, ""),
+    PASSO_WHOLE("backlash", tracker.backlash, 0, UINT16_MAX, ""),
+};
+static const struct passo_key TRACK_KEYS[] = {
+    PASSO_VALUE("target", distance, INTEGER, NULL), PASSO_VALUE("axis", axis, AXIS, "0"), CHANNEL};
+static const struct passo_key UNTRACK_KEYS[] = {PASSO_VALUE("axis", axis, AXIS, NULL), CHANNEL};
+#endif
 #ifndef PASSO_WITHOUT_PARTS /* for the same */
 static const struct passo_key OUTPUT_KEYS[] = {
     PASSO_WHOLE("levels", levels, 0, UINT8_MAX, ""),
@@ -148,9 +160,9 @@ const struct passo_command passo_command_table[] = {
     {"rpm", passo_run_rpm, TAKES(RPM_KEYS), 1, false, "change the speed of the rotation; 0 ends it"},
     {"hold", passo_run_hold, TAKES(CHANNEL_KEYS), 0, true, "feed hold: decelerate to rest on the path"},
     {"resume", passo_run_resume, TAKES(CHANNEL_KEYS), 0, true, "continue after hold"},
-    {"override", passo_run_override, TAKES(PERCENT_KEYS), 1, true, "feed override of all motion, 1 to 100"},
-    {"stop", passo_run_stop, TAKES(CHANNEL_KEYS), 0, true, "soft stop, flush the queues; then clear"},
-    {"abort", passo_run_abort, TAKES(CHANNEL_KEYS), 0, true, "hard stop, flush the queues; then clear"},
+    {"override", passo_run_override, TAKES(PERCENT_KEYS), 1, true, "feed override, 1 to 100"},
+    {"stop", passo_run_stop, TAKES(CHANNEL_KEYS), 0, true, "soft stop; then clear"},
+    {"abort", passo_run_abort, TAKES(CHANNEL_KEYS), 0, true, "hard stop; then clear"},
     {"clear", passo_run_clear, TAKES(CHANNEL_KEYS), 0, false, "leave the stopped state"},
     {"status", passo_run_status, TAKES(CHANNEL_KEYS), 0, true, "state of the channel"},
     {"position", passo_run_position, TAKES(CHANNEL_KEYS), 0, true, "position of each axis, in steps"},
@@ -159,7 +171,7 @@ const struct passo_command passo_command_table[] = {
     {"disable", passo_run_disable, TAKES(AXIS_KEYS), 1, false, "disable it; at rest or stopped"},
     {"zero", passo_run_zero, TAKES(CHANNEL_KEYS), 0, false, "set all positions to 0"},
     {"sync", passo_run_sync, TAKES(ON_KEYS), 1, true, "1: motions wait for start or the sync input; 0: not"},
-    {"start", passo_run_start, NULL, 0, 0, true, "start all waiting motions simultaneously"},
+    {"start", passo_run_start, NULL, 0, 0, true, "start all waiting motions"},
     {"input", passo_run_input, TAKES(INPUT_KEYS), 0, false, "configure the inputs of an axis, or show them"},
     {"inputs", passo_run_inputs, TAKES(INPUTS_KEYS), 0, true, "active inputs, and those active since clear"},
     {"home", passo_run_home, TAKES(HOME_KEYS), 0, false, "run a homing cycle on one axis"},
@@ -185,6 +197,12 @@ const struct passo_command passo_command_table[] = {
     {"encoders", passo_run_encoders, TAKES(CHANNEL_KEYS), 0, true, "encoder and thread status"},
     {"adopt", passo_run_adopt, TAKES(ADOPT_KEYS), 1, false, "set an axis position from its encoder"},
     {"thread", passo_run_thread, TAKES(THREAD_KEYS), 0, false, "a straight line clocked by an encoder"},
+#endif
+#ifndef PASSO_WITHOUT_TRACKERS
+    {"tracker", passo_run_tracker, TAKES(TRACKER_KEYS), 1, true,
+	"configure the tracker of an axis, or show it"},
+    {"track", passo_run_track, TAKES(TRACK_KEYS), 1, true, "send the tracker of an axis to a target"},
+    {"untrack", passo_run_untrack, TAKES(UNTRACK_KEYS), 1, true, "slow a tracker down to rest"},
 #endif
     {"config", passo_run_config, NULL, 0, 0, false, "show or change settings; help config lists them"},
     {"table", passo_run_table, TAKES(TABLE_KEYS), 2, false, "load 16 of 256 points of a shape, or check it"},

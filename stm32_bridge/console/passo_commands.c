@@ -92,7 +92,7 @@ void passo_commands_execute(struct passo_console *console, char *line)
 	struct passo_values values = {.on = true};
 	struct passo_reading reading = {.sink = &console->sink,
 	    .clock_hz = console->clock_hz,
-	    .axes = console->opened ? passo_machine(&console->channel[0].passo)->axes : PASSO_AXES_MAX};
+	    .axes = console->opened ? passo_axes(&console->channel[0].passo) : PASSO_AXES_MAX};
 	struct passo_call call = {
 	    .console = console, .reading = &reading, .words = &words, .values = &values};
 	uint32_t channel;

@@ -46,6 +46,11 @@ void passo_commands_reset_outputs(struct passo_console_channel *channel, uint32_
 void passo_commands_reset_encoders(struct passo_console_channel *channel);
 #endif
 
+#ifndef PASSO_WITHOUT_TRACKERS
+/* Configures the trackers that were given, if the channel has trackers. */
+enum passo_error passo_commands_set_trackers(struct passo_console_channel *channel);
+#endif
+
 /* Number of channels of the core; 0 while it is not open. */
 uint8_t passo_commands_channels(const struct passo_console *console);
 

@@ -15,6 +15,7 @@
 #include "passo_forms.h"
 #include "passo_home.h"
 #include "passo_outputs.h"
+#include "passo_track.h"
 
 /* Maximum length of a line, without its terminator. */
 #define PASSO_LINE_MAX 255u
@@ -54,6 +55,14 @@ struct passo_console_encoder {
 #define PASSO_NO_FOLLOWING_LIMIT UINT64_MAX
 #endif
 
+#ifndef PASSO_WITHOUT_TRACKERS
+/* Tracker of an axis. */
+struct passo_console_tracker {
+	uint64_t speed, acceleration; /* UQ32.32 steps/s, steps/s^2; speed 0: not configured */
+	uint32_t backlash;            /* steps */
+};
+#endif
+
 /* Reasons why a line waits before it is answered. */
 enum passo_awaited {
 	PASSO_AWAITS_NOTHING,
@@ -83,6 +92,9 @@ struct passo_console_channel {
 	uint8_t encoders_given;  /* bit i: that of axis i was configured */
 	uint32_t encoder_filter; /* clocks */
 	struct passo_encoder_reading encoder_readings[PASSO_AXES_MAX]; /* the last ones */
+#endif
+#ifndef PASSO_WITHOUT_TRACKERS
+	struct passo_console_tracker tracker[PASSO_AXES_MAX];
 #endif
 };
 

@@ -70,7 +70,7 @@ enum passo_error passo_commands_set_encoders(struct passo_console_channel *chann
 
 	if (error == PASSO_ERROR_NO_ENCODERS)
 		return PASSO_OK;
-	for (uint8_t axis = 0; axis < passo_machine(passo)->axes && error == PASSO_OK; axis++) {
+	for (uint8_t axis = 0; axis < passo_axes(passo) && error == PASSO_OK; axis++) {
 		channel->encoder_readings[axis].valid = false;
 		if (((uint32_t)channel->encoders_given >> axis & 1u) != 0u)
 			error = set_encoder(passo, axis, &channel->encoder[axis]);

@@ -169,7 +169,7 @@ bool passo_run_input(const struct passo_call *call)
 void passo_say_trigger(
     const struct passo_sink *sink, const struct passo *passo, const struct passo_trigger_report *report)
 {
-	for (unsigned axis = 0; report->fired && axis < passo_machine(passo)->axes; axis++)
+	for (unsigned axis = 0; report->fired && axis < passo_axes(passo); axis++)
 		passo_say(sink, axis == 0u ? " position=%d" : ",%d", report->positions[axis]);
 }
 

@@ -55,7 +55,7 @@ static enum passo_error set_inputs(struct passo_console_channel *channel)
 
 	if (!passo_has_inputs(passo))
 		return PASSO_OK;
-	for (uint8_t axis = 0; axis < passo_machine(passo)->axes && error == PASSO_OK; axis++) {
+	for (uint8_t axis = 0; axis < passo_axes(passo) && error == PASSO_OK; axis++) {
 		if (((uint32_t)channel->inputs_given >> axis & 1u) != 0u)
 			error = passo_commands_set_inputs(&channel->inputs[axis], passo, axis);
 	}
@@ -77,6 +77,16 @@ static enum passo_error set_parts(struct passo_console_channel *channel)
 #endif
 }
 
+static enum passo_error set_trackers(struct passo_console_channel *channel)
+{
+#ifdef PASSO_WITHOUT_TRACKERS
+	(void)channel;
+	return PASSO_OK;
+#else
+	return passo_commands_set_trackers(channel);
+#endif
+}
+
 /* Applies the settings to a channel. */
 static enum passo_error set_up(const struct passo_console *console, struct passo_console_channel *channel)
 {
@@ -85,12 +95,14 @@ static enum passo_error set_up(const struct passo_console *console, struct passo
 	    passo_configure_motion(passo, passo_clocks(passo, console->hold_microseconds),
 		passo_clocks(passo, console->stop_microseconds), 0);
 
-	for (uint8_t axis = 0; axis < passo_machine(passo)->axes && error == PASSO_OK; axis++)
+	for (uint8_t axis = 0; axis < passo_axes(passo) && error == PASSO_OK; axis++)
 		error = passo_configure_axis(passo, axis, &channel->axis[axis]);
 	if (error == PASSO_OK)
 		error = set_inputs(channel);
 	if (error == PASSO_OK)
 		error = set_parts(channel);
+	if (error == PASSO_OK)
+		error = set_trackers(channel);
 	channel->unset = error != PASSO_OK;
 	return error;
 }

@@ -19,7 +19,7 @@ enum passo_error passo_driver_check_axis(const struct passo *passo, uint8_t axis
 {
 	enum passo_error error = passo_driver_check(passo);
 
-	return error == PASSO_OK && axis >= passo->machine.axes ? PASSO_ERROR_ARGUMENT_AXIS : error;
+	return error == PASSO_OK && axis >= passo->axes ? PASSO_ERROR_ARGUMENT_AXIS : error;
 }
 
 bool passo_driver_is_link_error(enum passo_error error)
@@ -103,4 +103,9 @@ uint64_t passo_clocks(const struct passo *passo, uint32_t microseconds)
 const struct passo_machine *passo_machine(const struct passo *passo)
 {
 	return &passo->machine;
+}
+
+uint8_t passo_axes(const struct passo *passo)
+{
+	return passo->axes;
 }

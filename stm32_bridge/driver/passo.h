@@ -200,6 +200,7 @@ struct passo {
 	uint16_t base;                     /* address of the channel's registers */
 	uint16_t line_places, ramp_places; /* depths of the queues */
 	uint8_t channel;
+	uint8_t axes;           /* of the channel; lines move the first ones, machine.axes */
 	uint8_t misses;         /* consecutive status reads that failed */
 	uint8_t idle_looks;     /* consecutive status reads that found all motions ended */
 	uint8_t movers;         /* axes moved since the last rest */
@@ -360,8 +361,10 @@ enum passo_error passo_load_table(struct passo *passo, enum passo_shape bank, co
 uint64_t passo_clocks(const struct passo *passo, uint32_t microseconds);
 /* Whether the core was built with inputs; see passo_inputs.h. */
 bool passo_has_inputs(const struct passo *passo);
-/* Clock, ticks and axes of this channel, for the functions of the planner. */
+/* Clock, ticks and axes of this channel, for the functions of the planner: the axes that lines can move. */
 const struct passo_machine *passo_machine(const struct passo *passo);
+/* AXES of this channel: those of passo_machine() and, behind them, those that only their trackers move. */
+uint8_t passo_axes(const struct passo *passo);
 
 /* Continuous rotation: start it from rest, change the speed, decelerate to rest. See passo_plan.h. If
  * passo_turn_stop() is not acknowledged, a soft stop replaces it, like passo_stop(). A change must reach the

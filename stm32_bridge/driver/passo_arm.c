@@ -18,7 +18,7 @@ enum passo_error passo_driver_check_source(
 {
 	if (source == PASSO_TRIGGER_SOURCE_NONE)
 		return PASSO_ERROR_NO_SOURCE;
-	if ((unsigned)source > PASSO_TRIGGER_SOURCE_INDEX || axis >= passo->machine.axes)
+	if ((unsigned)source > PASSO_TRIGGER_SOURCE_INDEX || axis >= passo->axes)
 		return PASSO_ERROR_ARGUMENT;
 	if (source == PASSO_TRIGGER_SOURCE_INDEX)
 		return PASSO_OK;
@@ -134,11 +134,11 @@ enum passo_error passo_read_trigger(struct passo *passo, struct passo_trigger_re
 	    (struct passo_trigger_report){.arming = state.arming, .armed = state.armed, .fired = state.fired};
 	if (!state.fired)
 		return PASSO_OK;
-	error = passo_host_read(passo->host, (uint16_t)(passo->base + PASSO_CHANNEL_TRIGGER_POSITION_BASE),
-	    words, passo->machine.axes);
+	error = passo_host_read(
+	    passo->host, (uint16_t)(passo->base + PASSO_CHANNEL_TRIGGER_POSITION_BASE), words, passo->axes);
 	if (error == PASSO_OK)
 		error = passo_driver_take_off_trackers(passo, words, false);
-	for (unsigned i = 0; error == PASSO_OK && i < passo->machine.axes; i++)
+	for (unsigned i = 0; error == PASSO_OK && i < passo->axes; i++)
 		report->positions[i] = passo_driver_offset(passo, i, (int32_t)words[i]);
 	return error;
 }

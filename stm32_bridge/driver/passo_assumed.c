@@ -69,7 +69,7 @@ void passo_driver_expect(struct passo *passo, const struct passo_line *line)
 
 void passo_driver_ended(struct passo *passo, const int32_t *positions)
 {
-	for (unsigned i = 0; i < passo->machine.axes; i++)
+	for (unsigned i = 0; i < passo->axes; i++)
 		passo->axis[i].expected = positions[i];
 	passo->expects = PASSO_EXPECT_NOTHING;
 	passo->idle_looks = passo->movers = 0;

@@ -21,7 +21,7 @@ static enum passo_error check_axis(const struct passo *passo, uint8_t axis)
 {
 	enum passo_error error = passo_driver_check_encoders(passo);
 
-	return error == PASSO_OK && axis >= passo->machine.axes ? PASSO_ERROR_ARGUMENT_AXIS : error;
+	return error == PASSO_OK && axis >= passo->axes ? PASSO_ERROR_ARGUMENT_AXIS : error;
 }
 
 static uint16_t address_of(uint8_t axis, uint16_t reg)

@@ -12,7 +12,7 @@ bool passo_is_homed(const struct passo *passo, uint8_t axis)
 
 static void forget(struct passo *passo, unsigned axes)
 {
-	for (unsigned i = 0; i < passo->machine.axes; i++)
+	for (unsigned i = 0; i < passo->axes; i++)
 		passo->axis[i].homed = passo->axis[i].homed && (axes >> i & 1u) == 0u;
 }
 
@@ -25,7 +25,7 @@ void passo_driver_forget_all(struct passo *passo)
  * the first step toward it: a hard stop for the other axes. */
 static bool is_soft_limit(const struct passo *passo)
 {
-	for (unsigned i = 0; i < passo->machine.axes; i++)
+	for (unsigned i = 0; i < passo->axes; i++)
 		if ((passo->movers >> i & 1u) != 0u && !passo->axis[i].limit_soft)
 			return false;
 	return (passo->movers & (passo->movers - 1u)) == 0u;
@@ -65,7 +65,7 @@ enum passo_error passo_driver_check_home(struct passo *passo)
 	struct passo_readings now;
 	bool any = false;
 
-	for (unsigned i = 0; i < passo->machine.axes; i++)
+	for (unsigned i = 0; i < passo->axes; i++)
 		any |= passo->axis[i].homed;
 	if (!any || !passo->has_inputs || passo->snapshot.state != PASSO_STATE_STOPPED
 	    || passo->snapshot.cause == PASSO_CAUSE_LIMIT)

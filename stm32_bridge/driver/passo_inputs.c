@@ -24,7 +24,7 @@ enum passo_error passo_configure_inputs(
 {
 	enum passo_error error = passo_driver_check_inputs(passo);
 
-	if (error == PASSO_OK && (!config || axis >= passo->machine.axes))
+	if (error == PASSO_OK && (!config || axis >= passo->axes))
 		error = PASSO_ERROR_ARGUMENT;
 	if (error == PASSO_OK)
 		error = passo_driver_require_rest(passo);

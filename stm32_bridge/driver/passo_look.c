@@ -80,7 +80,7 @@ enum passo_error passo_driver_require_rest(struct passo *passo)
 enum passo_error passo_driver_take_off_trackers(struct passo *passo, uint32_t *positions, bool once)
 {
 	const uint16_t address = (uint16_t)(passo->base + PASSO_CHANNEL_TRACKER_POSITION_BASE);
-	const size_t axes = passo->machine.axes;
+	const size_t axes = passo->axes;
 	uint32_t words[PASSO_AXES_MAX];
 
 	if (!passo->has_trackers)
@@ -97,15 +97,15 @@ enum passo_error passo_driver_positions(struct passo *passo, int32_t *positions,
 {
 	const uint16_t address = (uint16_t)(passo->base + PASSO_CHANNEL_POSITION_BASE);
 	uint32_t words[PASSO_AXES_MAX];
-	enum passo_error error = once ? passo_host_read_once(passo->host, address, words, passo->machine.axes)
-	                              : passo_host_read(passo->host, address, words, passo->machine.axes);
+	enum passo_error error = once ? passo_host_read_once(passo->host, address, words, passo->axes)
+	                              : passo_host_read(passo->host, address, words, passo->axes);
 
 	if (error != PASSO_OK)
 		return error;
 	error = passo_driver_take_off_trackers(passo, words, once);
 	if (error != PASSO_OK)
 		return error;
-	for (unsigned i = 0; i < passo->machine.axes; i++) {
+	for (unsigned i = 0; i < passo->axes; i++) {
 		positions[i] = (int32_t)words[i];
 		if (passo->zero_due)
 			passo->axis[i].offset = 0u - words[i];

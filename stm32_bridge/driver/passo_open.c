@@ -25,7 +25,7 @@ enum passo_error passo_driver_disown(struct passo *passo)
 		error = passo_driver_write(passo, PASSO_CHANNEL_COMPARE_PULSE, &none, 1);
 	if (error == PASSO_OK && passo->has_encoders)
 		error = passo_driver_write(passo, PASSO_CHANNEL_FOLLOW, &none, 1);
-	for (unsigned i = 0; error == PASSO_OK && passo->has_encoders && i < passo->machine.axes; i++)
+	for (unsigned i = 0; error == PASSO_OK && passo->has_encoders && i < passo->axes; i++)
 		error = passo_driver_write(passo,
 		    (uint16_t)(PASSO_CHANNEL_ENCODER_BASE + i * PASSO_CHANNEL_ENCODER_STRIDE
 		               + PASSO_ENCODER_SETUP),
@@ -69,10 +69,12 @@ static enum passo_error identify(struct passo *passo, const struct passo_options
 	const struct passo_parameters_word core = passo_unpack_parameters(words[2]);
 	if (!fits(core.channels, options->channels) || !fits(core.axes, options->axes)
 	    || !fits(core.tick_log2, options->tick_log2) || options->channel >= core.channels
-	    || core.channels > PASSO_CHANNELS_MAX || core.axes == 0u || core.axes > PASSO_AXES_MAX)
+	    || core.channels > PASSO_CHANNELS_MAX || core.axes <= core.tracked || core.axes > PASSO_AXES_MAX)
 		return PASSO_ERROR_PARAMETERS;
-	passo->machine = (struct passo_machine){
-	    .clock_hz = options->clock_hz, .tick_log2 = core.tick_log2, .axes = core.axes};
+	passo->axes = core.axes;
+	passo->machine = (struct passo_machine){.clock_hz = options->clock_hz,
+	    .tick_log2 = core.tick_log2,
+	    .axes = (uint8_t)(core.axes - core.tracked)};
 	passo->line_places = (uint16_t)(1u << core.line_queue_log2);
 	passo->ramp_places = (uint16_t)(1u << core.ramp_queue_log2);
 	passo->has_inputs = core.inputs;

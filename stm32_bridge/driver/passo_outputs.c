@@ -155,7 +155,7 @@ enum passo_error passo_arm_compare(struct passo *passo, const struct passo_compa
 	int32_t now[PASSO_AXES_MAX];
 	enum passo_error error = check_pointer(passo, config);
 
-	if (error == PASSO_OK && config->axis >= passo->machine.axes)
+	if (error == PASSO_OK && config->axis >= passo->axes)
 		error = PASSO_ERROR_ARGUMENT_AXIS;
 	if (error == PASSO_OK && config->interval == 0)
 		error = PASSO_ERROR_INTERVAL;

@@ -114,7 +114,7 @@ static enum passo_error check(const struct passo *passo, const struct passo_pass
 		return PASSO_ERROR_ARGUMENT_POINTER;
 	if (pass->lines == 0u || pass->lines > PASSO_PASS_LINES_MAX)
 		return PASSO_ERROR_ARGUMENT;
-	return pass->encoder < passo->machine.axes ? PASSO_OK : PASSO_ERROR_ARGUMENT_AXIS;
+	return pass->encoder < passo->axes ? PASSO_OK : PASSO_ERROR_ARGUMENT_AXIS;
 }
 
 /* Behind the first line. The next motion has the output that was set before. */

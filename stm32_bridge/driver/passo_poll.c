@@ -100,7 +100,7 @@ static enum passo_error resend_due(struct passo *passo)
 
 static bool is_at(const struct passo *passo, const int32_t *positions)
 {
-	for (unsigned i = 0; i < passo->machine.axes; i++) {
+	for (unsigned i = 0; i < passo->axes; i++) {
 		if (positions[i] != passo->axis[i].expected)
 			return false;
 	}

@@ -15,7 +15,7 @@ enum passo_error passo_positions(struct passo *passo, int32_t *steps)
 	if (!steps)
 		return PASSO_ERROR_ARGUMENT_POINTER;
 	error = passo_driver_positions(passo, steps, false);
-	for (unsigned i = 0; error == PASSO_OK && i < passo->machine.axes; i++)
+	for (unsigned i = 0; error == PASSO_OK && i < passo->axes; i++)
 		steps[i] = passo_driver_offset(passo, i, steps[i]);
 	return error;
 }
@@ -40,7 +40,7 @@ enum passo_error passo_positions_units(struct passo *passo, int32_t *steps, int6
 		error = PASSO_ERROR_ARGUMENT_POINTER;
 	if (error == PASSO_OK)
 		error = passo_positions(passo, positions);
-	for (unsigned i = 0; error == PASSO_OK && i < passo->machine.axes; i++) {
+	for (unsigned i = 0; error == PASSO_OK && i < passo->axes; i++) {
 		units[i] = passo_driver_units(positions[i], passo->axis[i].steps_per_unit);
 		if (steps)
 			steps[i] = positions[i];
@@ -89,7 +89,7 @@ enum passo_error passo_target(const struct passo *passo, int32_t *steps)
 		return PASSO_ERROR_STOPPED;
 	if (passo->expects > PASSO_EXPECT_POSITIONS)
 		return PASSO_ERROR_MOVING;
-	for (unsigned i = 0; i < passo->machine.axes; i++)
+	for (unsigned i = 0; i < passo->axes; i++)
 		steps[i] = passo_driver_offset(passo, i, passo->axis[i].expected);
 	return PASSO_OK;
 }
@@ -101,7 +101,7 @@ enum passo_error passo_distance_to_go(struct passo *passo, int32_t *steps)
 
 	if (error == PASSO_OK)
 		error = passo_positions(passo, positions);
-	for (unsigned i = 0; error == PASSO_OK && i < passo->machine.axes; i++)
+	for (unsigned i = 0; error == PASSO_OK && i < passo->axes; i++)
 		steps[i] = (int32_t)((uint32_t)steps[i] - (uint32_t)positions[i]);
 	return error;
 }
@@ -136,7 +136,7 @@ enum passo_error passo_zero(struct passo *passo)
 	if (error != PASSO_OK)
 		return passo_driver_moving(error);
 	const int32_t zeros[PASSO_AXES_MAX] = {0};
-	for (unsigned i = 0; i < passo->machine.axes; i++)
+	for (unsigned i = 0; i < passo->axes; i++)
 		passo->axis[i].offset = 0;
 	passo_driver_ended(passo, zeros);
 	return PASSO_OK;

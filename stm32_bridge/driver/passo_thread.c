@@ -104,7 +104,7 @@ enum passo_error passo_thread(struct passo *passo, const struct passo_thread *th
 
 	if (error == PASSO_OK && !thread)
 		error = PASSO_ERROR_ARGUMENT_POINTER;
-	if (error == PASSO_OK && thread->encoder >= passo->machine.axes)
+	if (error == PASSO_OK && thread->encoder >= passo->axes)
 		error = PASSO_ERROR_ARGUMENT_AXIS;
 	for (unsigned i = passo->machine.axes; error == PASSO_OK && i < PASSO_AXES_MAX; i++)
 		error = thread->steps[i] != 0 ? PASSO_ERROR_ARGUMENT_AXIS : PASSO_OK;

@@ -48,7 +48,7 @@ enum passo_error passo_configure_tracker(struct passo *passo, const struct passo
 
 	if (error != PASSO_OK)
 		return error;
-	const uint32_t tick = PASSO_TRACKER_TICK(passo->machine.axes), clock_hz = passo->machine.clock_hz;
+	const uint32_t tick = PASSO_TRACKER_TICK(passo->axes), clock_hz = passo->machine.clock_hz;
 	const uint64_t speed = passo_mul_div(track->top_speed, tick, clock_hz);
 	const uint64_t acceleration =
 	    passo_mul_div(passo_mul_div(track->acceleration, tick, clock_hz), tick, clock_hz);

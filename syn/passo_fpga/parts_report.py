@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """`make report PARTS=1`: what each optional part of the core costs, once and per axis, and the clock with it.
 
-The size is that after synthesis: LUTs, flip-flops and block RAMs of cores with and without the part. The
-clock is that of the device of CLOCK_DEVICE, over several seeds.
+The size is that after synthesis: LUTs, flip-flops and block RAMs of cores with and without the part; for a
+motor without lines (TRACKED), of a core with trackers and with these motors besides. The clock is that of the
+device of CLOCK_DEVICE, over several seeds, also without a part.
 """
 
 import statistics
@@ -19,7 +20,7 @@ from passo_fpga.design import Design
 from passo_fpga.devices import DEVICES, SPI_MHZ, Device
 from passo_fpga.flow import cells, place, synthesize
 from passo_fpga.pages import markdown, mhz, write_block
-from passo_fpga.parts import WITH_PINS
+from passo_fpga.parts import PORTS
 from passo_fpga.tools import prepare, workers
 
 REPORT = paths.build / "report-parts.json"
@@ -28,12 +29,23 @@ FEW, MANY = 1, 4  # axes
 SEEDS = range(1, 9)
 CLOCK_DEVICE = "hx8k"
 COLUMNS = ("LUT", "FF", "BRAM")
+TRACKED = "tracked"
+PARTS = (*PORTS, TRACKED)
 
 
 def design(device: Device, axes: int, part: str = "") -> Design:
-    """The core with one part, or with none."""
-    parameters = {"CHANNELS": 1, "AXES": axes, **device.core, **({part.upper(): 1} if part else {})}
+    """The core with one part, or with none; of "tracked" half of the axes have no lines."""
+    if part == TRACKED:
+        chosen = {"TRACKERS": 1, "TRACKED": axes // 2}
+    else:
+        chosen = {part.upper(): 1} if part else {}
+    parameters = {"CHANNELS": 1, "AXES": axes, **device.core, **chosen}
     return Design(f"{device.name}-1x{axes}{f'-{part}' if part else ''}", device, "passo_spi_top", parameters)
+
+
+def axes_of(part: str) -> int:
+    """Axes of the core whose clock is that of a part: as many with lines."""
+    return 2 * MANY if part == TRACKED else MANY
 
 
 def measure(names: Sequence[str]) -> dict[str, Any]:
@@ -42,14 +54,15 @@ def measure(names: Sequence[str]) -> dict[str, Any]:
     devices = [DEVICES[name] for name in names]
     prepare(dict.fromkeys(program for device in devices for program in device.family.programs), tell)
     wanted = [
-        design(device, axes, part) for device in devices for axes in (FEW, MANY) for part in ("", *WITH_PINS)
+        design(device, axes, part) for device in devices for axes in (FEW, MANY) for part in ("", *PORTS)
     ]
+    wanted += [design(device, axes_of(TRACKED), TRACKED) for device in devices]
     with ThreadPoolExecutor(workers()) as pool:
         estimate = Estimate(len(wanted))
         for count, made in enumerate(pool.map(_synthesized, wanted), 1):
             tell(f"synthesis {estimate.counted(count)}: {made.name}")
         clocks = _clocks(pool, tell) if CLOCK_DEVICE in names else []
-    sizes = [row(device, part) for device in devices for part in WITH_PINS]
+    sizes = [row(device, part) for device in devices for part in PARTS]
     return {"axes": [FEW, MANY], "seeds": list(SEEDS), "sizes": sizes, "clocks": clocks}
 
 
@@ -60,6 +73,12 @@ def _synthesized(made: Design) -> Design:
 
 def row(device: Device, part: str) -> dict[str, Any]:
     """Cost once and per axis, from cores with few and with many axes."""
+    if part == TRACKED:
+        alone, beside = cells(design(device, MANY, "trackers")), cells(design(device, axes_of(part), part))
+        more = {column: beside[column] - alone[column] for column in COLUMNS}
+        each = {column: more[column] / MANY for column in COLUMNS}
+        once = dict.fromkeys(COLUMNS, 0.0)
+        return {"device": device.name, "part": part, "once": once, "per_axis": each, "of_many": more}
     few, many = (_more(device, axes, part) for axes in (FEW, MANY))
     each = {column: (many[column] - few[column]) / (MANY - FEW) for column in COLUMNS}
     once = {column: few[column] - FEW * each[column] for column in COLUMNS}
@@ -74,8 +93,8 @@ def _more(device: Device, axes: int, part: str) -> dict[str, int]:
 def _clocks(pool: ThreadPoolExecutor, tell: Any) -> list[dict[str, Any]]:
     device = DEVICES[CLOCK_DEVICE]
     target, rows = device.target_mhz, []
-    for part in WITH_PINS:
-        made = design(device, MANY, part)
+    for part in ("", *PARTS):
+        made = design(device, axes_of(part), part)
         run = partial(place, made, mhz=target, clock_ports={"clk": target, "spi_sclk": SPI_MHZ})
         reached = []
         for seed, placed in zip(SEEDS, pool.map(run, SEEDS), strict=True):
@@ -115,17 +134,22 @@ def _sizes(rows: Sequence[dict[str, Any]]) -> tuple[str, Sequence[str], list[lis
             DEVICES[row["device"]].title,
             *(f"{row['once'][column]:,.0f} + {row['per_axis'][column]:,.0f}" for column in COLUMNS),
         ]
-        for row in sorted(rows, key=lambda row: WITH_PINS.index(row["part"]))
+        for row in sorted(rows, key=lambda row: PARTS.index(row["part"]))
     ]
     return "cost of the parts", header, cells_of
 
 
 def _clock_table(rows: Sequence[dict[str, Any]]) -> tuple[str, Sequence[str], list[list[str]]]:
     device = DEVICES[CLOCK_DEVICE]
-    header = ("part", f"{device.title}, {MANY} axes", "lowest MHz", f"median MHz of {len(SEEDS)} seeds")
+    header = (
+        "part",
+        f"{device.title}, {MANY} axes with lines",
+        "lowest MHz",
+        f"median MHz of {len(SEEDS)} seeds",
+    )
     made = [
         [
-            f"`{row['part'].upper()}`",
+            f"`{row['part'].upper()}`" if row["part"] else "none",
             f"{row['size']:,} {device.family.size_unit}",
             mhz(min(row["f_max"]) or None),
             mhz(statistics.median(row["f_max"])),

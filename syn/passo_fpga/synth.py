@@ -38,19 +38,30 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "--clock", type=float, metavar="MHZ", help="clock of the core (default: of the board)"
     )
     parser.add_argument("--parts", default="", help=f"optional blocks: {','.join(parts.PORTS)}")
+    parser.add_argument("--tracked", type=int, default=0, help="the last axes, which have no lines")
     options = parser.parse_args(arguments)
     try:
         if not options.board:
             _list()
             return 0
-        made = make(board(options.board), options.axes, options.clock, parts.chosen(options.parts))
-        return 0 if made else 1
+        chosen, wanted = board(options.board), parts.chosen(options.parts)
+        more = _without_lines(options.tracked, options.axes or chosen.axes, wanted)
+        return 0 if make(chosen, options.axes, options.clock, wanted, more=more) else 1
     except (BoardError, PllError) as error:
         print(f"make synth: {error}", file=sys.stderr)
         return 2
     except ToolError as error:
         print(error, file=sys.stderr)
         return 1
+
+
+def _without_lines(tracked: int, axes: int, wanted: Sequence[str]) -> dict[str, int]:
+    """The parameter of axes that only trackers move."""
+    if tracked and "trackers" not in wanted:
+        raise BoardError("axes without lines need trackers: PARTS=trackers")
+    if not 0 <= tracked < axes:
+        raise BoardError(f"axes without lines: {tracked} of {axes}; must be 0 to {axes - 1}")
+    return {"TRACKED": tracked} if tracked else {}
 
 
 def _list() -> None:

@@ -223,7 +223,7 @@ def open_driver(wire: Wire, **options: Any) -> Driver:
 
 def configure(driver: Driver) -> None:
     """Pins of all axes."""
-    for axis in range(driver.c.machine.axes):
+    for axis in range(driver.c.axes):
         config = {"step_high_ns": 1000, "step_low_ns": 1000, "dir_setup_ns": 500, "dir_hold_ns": 500}
         driver.call("configure_axis", axis, ffi().new("struct passo_axis_config *", config))
         driver.call("enable", axis, True)

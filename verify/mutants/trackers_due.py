@@ -2,8 +2,8 @@
 """What trackers do, from the recurrence and the joining of docs/architecture.md, in Python integers."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Any
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
 
 from verify.mutants.motions_judge import Steps
 
@@ -23,8 +23,7 @@ def nearest(position: int) -> int:
     return (position + HALF) // STEP
 
 
-@dataclass(frozen=True)
-class Hand:
+class Hand(NamedTuple):
     """The tracker of an axis between two ticks, and what the host has written."""
 
     position: int = 0  # of 2^-32 steps
@@ -39,20 +38,21 @@ class Hand:
 
     def tick(self) -> "Hand":
         """The recurrence."""
-        v, t, a, sign = self.v, self.t, self.acceleration, self.sign
-        d = signed(self.target * STEP - self.position) * sign
-        if not self.follows and v == 0:
+        position, before, t, sign, target, speed, a, follows, applied = self
+        v = before
+        if not follows and v == 0:
             return self
-        if self.follows and v + a <= self.speed and t + v + a <= d:
+        d = signed(target * STEP - position) * sign
+        if follows and v + a <= speed and t + v + a <= d:
             v += a
             t += v
-        elif v and not (self.follows and v <= self.speed and t <= d):
+        elif v and not (follows and v <= speed and t <= d):
             t -= v
             v -= a
-        if v == 0 and self.follows and 0 <= d < a:
-            return replace(self, v=0, t=0, position=self.position + d * sign)
-        turned = self.follows and self.v == 0 and d < 0
-        return replace(self, v=v, t=t, position=self.position + v * sign, sign=-sign if turned else sign)
+        if v == 0 and follows and 0 <= d < a:
+            return Hand(position + d * sign, 0, 0, sign, target, speed, a, follows, applied)
+        after = -sign if follows and before == 0 and d < 0 else sign
+        return Hand(position + v * sign, v, t, after, target, speed, a, follows, applied)
 
 
 @dataclass(frozen=True)
@@ -75,10 +75,10 @@ class Write:
 def applied(hand: Hand, writes: Sequence[tuple[int, dict[str, Any]]], tick: int) -> Iterator[Hand]:
     """It before a tick, with the writes that act by now, and with some that may."""
     while hand.applied < len(writes) and writes[hand.applied][0] + LATE <= tick:
-        hand = replace(hand, **writes[hand.applied][1], applied=hand.applied + 1)
+        hand = hand._replace(**writes[hand.applied][1], applied=hand.applied + 1)
     yield hand
     while hand.applied < len(writes) and writes[hand.applied][0] <= tick:
-        hand = replace(hand, **writes[hand.applied][1], applied=hand.applied + 1)
+        hand = hand._replace(**writes[hand.applied][1], applied=hand.applied + 1)
         yield hand
 
 

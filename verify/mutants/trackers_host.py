@@ -6,7 +6,6 @@ What a write changes acts within some ticks: all of them are tried, and one must
 
 import random
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -190,7 +189,7 @@ class Host(Motions):
             looks[tick] = {hand.position // STEP for hand in hands}
         done = {hand for hand in hands if hand.applied == len(writes)}
         assert done, f"axis {axis}: a write acts"
-        self.hands[axis] = {replace(hand, applied=0) for hand in done}
+        self.hands[axis] = {hand._replace(applied=0) for hand in done}
         self.writes[axis] = []
         seen = []
         for begun, ended, _ in self.shown:
@@ -237,8 +236,8 @@ class Host(Motions):
                 "target": self.targets[axis][self.down[axis]],
                 "position": positions[axis] * STEP,
             }
-            known = replace(next(iter(hands)), **written, v=0, t=0, applied=0)
-            self.hands[axis] = {replace(known, sign=sign) for sign in (-1, 1)}
+            known = next(iter(hands))._replace(**written, v=0, t=0, applied=0)
+            self.hands[axis] = {known._replace(sign=sign) for sign in (-1, 1)}
             self.writes[axis] = []
         self.shown = []
         self.look()

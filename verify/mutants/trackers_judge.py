@@ -337,12 +337,17 @@ class Trackers(Host):
         lines = [
             Line(
                 m,
-                tuple(rng.choice((m, -m, 0, m // 2, -(m // 3), m - 1)) for _ in range(self.axes)),
+                self.of_lines([rng.choice((m, -m, 0, m // 2, -(m // 3), m - 1)) for _ in range(self.axes)]),
                 last=n == len(parts) - 1,
             )
             for n, m in enumerate(parts)
         ]
         return lines, ramps
+
+    def of_lines(self, steps: Sequence[int]) -> tuple[int, ...]:
+        """The steps of a line, of which an axis without lines has none."""
+        lined = self.axes - self.parameters.tracked
+        return (*steps[:lined], *(0 for _ in steps[lined:]))
 
     def directions(self, lines: Sequence[Line]) -> None:
         """The direction in which the lines have moved the axes last."""
@@ -367,11 +372,11 @@ class Trackers(Host):
         velocity, total = ONE // gap, 2 * gap
         ramps = [Ramp(velocity, 0), Ramp(velocity, total * gap // self.tick, last=True)]
         total = len(substep_clocks(ramps, self.tick.bit_length() - 1))
-        ways = [self.rng.choice((-1, 1)) for _ in range(self.axes)]
+        ways = [self.rng.choice((-1, 1)) * total for _ in range(self.axes)]
         for axis, way in enumerate(ways):
             self.limit(axis, STEP - 1, (STEP - 1) // 8)
-            self.go(axis, self.position(axis) - way * total)
-        self.both([Line(total, tuple(way * total for way in ways), last=True)], ramps, 2 * gap)
+            self.go(axis, self.position(axis) - way)
+        self.both([Line(total, self.of_lines(ways), last=True)], ramps, 2 * gap)
 
     def both(self, lines: Sequence[Line], ramps: Sequence[Ramp], wait: int) -> None:
         """A path, and trackers that are enabled some clocks later."""
@@ -380,7 +385,7 @@ class Trackers(Host):
         self.push(self.channel, lines, ramps)
         self.channel.start()
         self.engine.run(wait)
-        hands = [{replace(hand, follows=True) for hand in hands} for hands in self.hands]
+        hands = [{hand._replace(follows=True) for hand in hands} for hands in self.hands]
         self.enable((1 << self.axes) - 1)
         at = self.engine.clock - FRAME
         self.wait(self.channel)

@@ -35,6 +35,7 @@ TRACKER_SETS = (
     Parameters(1, 4, 7, 5, 5, inputs=1, trackers=1),
     Parameters(1, 5, 7, 5, 5, inputs=1, trackers=1),
     Parameters(1, 1, 7, 5, 5, trackers=1),
+    Parameters(1, 5, 7, 5, 5, inputs=1, outputs=1, trackers=1, tracked=3),
 )
 CHUNK = 50  # histories per process
 

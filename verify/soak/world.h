@@ -175,7 +175,7 @@ void world_exchange(struct world *world, const uint32_t *mosi, uint32_t *miso, s
 /* Words of a line. */
 static inline unsigned world_line_words(const struct passo_parameters *parameters)
 {
-	return PASSO_LINE_WORDS((unsigned)parameters->axes) + parameters->outputs;
+	return PASSO_LINE_WORDS((unsigned)parameters->axes - parameters->tracked) + parameters->outputs;
 }
 
 /* Schedules an edge of an input pin, in any order, but not in the past. */
