@@ -79,17 +79,22 @@ module passo_channel_registers #(
                              || (INPUTS != 0 && bus_address[7:3] == CHANNEL_TRIGGER_POSITION_BASE[7:3]));
   end
 
-  // Blocks of write-only and of read-only registers
-  reg in_settings;
+  // Write-only registers, and the block of read-only ones
+  reg is_command;
+  reg is_rate_target;
+  reg is_rate_slew;
+  reg is_stop_slew;
+  reg is_drain_velocity;
   reg in_state;
 
   always @(posedge clk) begin
-    in_settings <= select && bus_address <= CHANNEL_DRAIN_VELOCITY;
-    in_state    <= select && bus_address[7:2] == CHANNEL_STATE[7:2];
+    is_command        <= select && bus_address == CHANNEL_COMMAND;
+    is_rate_target    <= select && bus_address == CHANNEL_RATE_TARGET;
+    is_rate_slew      <= select && bus_address == CHANNEL_RATE_SLEW;
+    is_stop_slew      <= select && bus_address == CHANNEL_STOP_SLEW;
+    is_drain_velocity <= select && bus_address == CHANNEL_DRAIN_VELOCITY;
+    in_state          <= select && bus_address[7:2] == CHANNEL_STATE[7:2];
   end
-
-  wire is_command = in_settings && number == CHANNEL_COMMAND[2:0];
-  wire is_drain_velocity = in_settings && number == CHANNEL_DRAIN_VELOCITY[2:0];
 
   wire abort = bus_data[CHANNEL_COMMAND_ABORT_LSB];
   wire stop = bus_data[CHANNEL_COMMAND_STOP_LSB] & ~abort;
@@ -114,17 +119,16 @@ module passo_channel_registers #(
       | (reads[3] ? velocity : 32'd0);
 
   // Writing
-  reg  drain_velocity_written;
-  wire write = in_settings && bus_write;
+  reg drain_velocity_written;
 
   always @(posedge clk) begin
-    {command_zero, command_clear, command_abort, command_stop} <= {zero, clear, abort, stop} & {4{write & is_command}};
-    if (write && number == CHANNEL_RATE_TARGET[2:0]) rate_target <= bus_data[16:0];
-    if (write && number == CHANNEL_RATE_SLEW[2:0]) rate_slew <= bus_data[16:0];
-    if (write && number == CHANNEL_STOP_SLEW[2:0]) stop_slew <= bus_data[16:0];
+    {command_zero, command_clear, command_abort, command_stop} <= {zero, clear, abort, stop} & {4{bus_write & is_command}};
+    if (bus_write && is_rate_target) rate_target <= bus_data[16:0];
+    if (bus_write && is_rate_slew) rate_slew <= bus_data[16:0];
+    if (bus_write && is_stop_slew) stop_slew <= bus_data[16:0];
     // the path takes the upper bits one clock after the lower ones
-    drain_velocity_written <= write && is_drain_velocity;
-    if (write && is_drain_velocity) drain_velocity[7:0] <= bus_data[7:0];
+    drain_velocity_written <= bus_write && is_drain_velocity;
+    if (bus_write && is_drain_velocity) drain_velocity[7:0] <= bus_data[7:0];
     if (drain_velocity_written) drain_velocity[31:8] <= bus_data[31:8];
     if (rst) begin
       rate_target                                                <= CHANNEL_RATE_TARGET_RESET;

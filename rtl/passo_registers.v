@@ -34,7 +34,7 @@ module passo_registers #(
   output wire [                            31:0] read_data,
   // link
   input  wire [                             7:0] last_sequence,
-  output wire                                    is_counters,    // the address is that of refusal counters
+  output reg                                     is_counters,    // the address is that of refusal counters
   // channels
   output reg  [                    CHANNELS-1:0] run,
   output reg  [                    CHANNELS-1:0] wait_sync,
@@ -95,8 +95,7 @@ module passo_registers #(
 
   integer i;
 
-  assign is_counters = known && number[2:1] == ADDRESS_REFUSALS_0[2:1];
-  assign bad_value   = is_run & run_beyond;
+  assign bad_value = is_run & run_beyond;
 
   assign read_data =
       (reads_status ? status : 32'd0)
@@ -109,6 +108,7 @@ module passo_registers #(
 
   always @(posedge clk) begin
     known        <= bus_address[11:3] == 9'd0;
+    is_counters  <= bus_address[11:1] == ADDRESS_REFUSALS_0[11:1];
     is_run       <= bus_address == ADDRESS_RUN;
     reads_status <= ~bus_read;
     for (i = 0; i < 4; i = i + 1) reads[i] <= bus_read && known && number == i[2:0];

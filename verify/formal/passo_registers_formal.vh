@@ -64,5 +64,6 @@ always @(posedge clk)
 always @(posedge clk)
   if (f_ran) begin
     assert (is_run == ($past(bus_address) == ADDRESS_RUN));
+    assert (is_counters == ($past(bus_address[11:1]) == ADDRESS_REFUSALS_0[11:1]));
     assert (known == ($past(bus_address) <= ADDRESS_BUILD));
   end
