@@ -419,7 +419,8 @@ module passo_tracker #(
     in_targets <= select && bus_address[7:4] == CHANNEL_TRACKER_TARGET_BASE[7:4];
     in_axis    <= select && bus_address[7:6] == CHANNEL_AXIS_BASE[7:6] && bus_address[2:1] == AXIS_TRACKER_SPEED[2:1];
     in_state <= select && bus_address[7:1] == CHANNEL_TRACKER_ENABLE[7:1];
-    of_tracker <= select && bus_address[7:3] == CHANNEL_TRACKER_POSITION_BASE[7:3];
+    of_tracker <= select && bus_address[7:3] == CHANNEL_TRACKER_POSITION_BASE[7:3]
+                   && {1'b0, number} < AXES[3:0];
     write_enable <= bus_write && in_state && !number[0];
     read_state <= bus_read && in_state && number[0];
     takes_upper <= takes_lower;
