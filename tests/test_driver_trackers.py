@@ -174,6 +174,52 @@ def test_a_switch_is_found_beside_a_tracker(target: int) -> None:
     assert report.fired and report.positions[0] == pytest.approx(40, abs=2)
 
 
+@pytest.mark.parametrize(
+    ("axis", "begin", "pull_off", "position"),
+    [(0, -600, 50, 40), (3, -720, 0, -7)],
+    ids=["off the switch", "on it, without lines"],
+)
+def test_a_motor_is_homed_by_its_tracker(axis: int, begin: int, pull_off: int, position: int) -> None:
+    """Its targets count from the edge then, to the step that the slow approach saw late; others stay."""
+    core = Parameters(axes=5, trackers=1, inputs=1, tracked=2) if axis else PARAMETERS
+    rig = Machine(model_engine(core, CLOCK_HZ), [Switch("home", axis, -700)])
+    driver = driver_of(rig)
+    own, other = track(axis), track(axis=1)
+    for one, target in ((own, begin), (other, 33)):
+        driver.call("configure_tracker", one)
+        driver.call("track_to", one, target)
+        settle(driver, rig, one.axis)
+    speeds = {"slow_speed": 10_000 * Q32, "acceleration": 5_000_000 * Q32}
+    task = home(axis=axis, pull_off=pull_off, position=position, track=own, **speeds)
+    assert run_home(driver, task) == "OK"
+    assert driver.lib.passo_is_homed(driver.c, axis) and not driver.is_moving
+    assert set(driver.positions()) == {0}
+    if pull_off:
+        assert reading(driver, axis).position == pytest.approx(position + pull_off, abs=1)
+    for target in (position, position + 100, position):
+        driver.call("track_to", own, target)
+        settle(driver, rig, axis)
+        assert rig.positions[axis] == pytest.approx(-700 + target - position, abs=1)
+        assert reading(driver, axis).position == target
+    assert reading(driver, 1).position == 33 and rig.positions[1] == 33
+    driver.call("track_to", other, 0)
+    settle(driver, rig, 1)
+    driver.call("zero")
+    assert reading(driver, axis).position == 0
+
+
+def test_what_a_tracker_cannot_home() -> None:
+    """A switch that is not there, a tracker of another axis or of none."""
+    rig = Machine(model_engine(PARAMETERS, CLOCK_HZ), [Switch("home", 0, -700)])
+    driver = driver_of(rig)
+    own = track()
+    assert run_home(driver, home(track=track(axis=1))) == "ARGUMENT"
+    assert run_home(driver, home(distance=-100, track=own)) == "SWITCH_MISSED"
+    assert rig.positions[0] == -100 and not driver.lib.passo_is_homed(driver.c, 0)
+    plain = driver_of(Machine(model_engine(Parameters(inputs=1), CLOCK_HZ), [Switch("home", 0, -700)]))
+    assert run_home(plain, home(track=own)) == "NO_TRACKERS"
+
+
 def test_a_switch_stops_a_tracker() -> None:
     """No step toward it; the other way is free."""
     driver, wire = machine()

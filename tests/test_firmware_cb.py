@@ -33,7 +33,7 @@ SECONDS = 0.5  # until one has become the other
 
 IMAGES = [LARGE_IMAGE, BOTH_IMAGE]
 LEFT_OUT = {LARGE_IMAGE: ": no console", BOTH_IMAGE: ": no tools"}
-LINES = {LARGE_IMAGE: 31, BOTH_IMAGE: 40}  # of the look-ahead
+LINES = {LARGE_IMAGE: 30, BOTH_IMAGE: 40}  # of the look-ahead
 
 with_console = pytest.mark.parametrize("image", [BOTH_IMAGE], ids="_".join, indirect=True)
 
@@ -258,6 +258,38 @@ def test_settings_are_at_the_end_of_its_flash(board: GrblBoard) -> None:
     assert board.line("$100=84") == "error:7"
     board.restart()
     assert "$100=83.000" in board.line("$$").splitlines()
+
+
+def place(board: GrblBoard) -> int:
+    """Steps of the first motor since the last call."""
+    events = board.events()
+    level = events["step"].astype(np.int64) & 1
+    rising = np.flatnonzero(np.diff(level, prepend=0) == 1)
+    return int((1 - 2 * (events["dir"][rising].astype(np.int64) & 1)).sum())
+
+
+def test_backlash_is_taken_up(image: tuple[str, ...], elf: Path) -> None:
+    """With settings that outlast a reset; the other image, and a core without trackers, refuse it."""
+    with model_engine(replace(PARAMETERS, trackers=1), HZ) as engine:
+        board = GrblBoard(engine, elf)
+        if image == BOTH_IMAGE:
+            assert board.line("$160=0.1") == board.line("$810=5000") == "error:3"
+            return
+        assert board.line("$160=0.1") == board.line("$810=5000") == "ok"
+        for line in ("G1 X0.5 F3000", "G1 X0.25", "G4 P0.05"):
+            assert board.line(line) == "ok"
+        assert place(board) == 20 - 8 and board.report()["MPos"].startswith("0.250,")
+        board.restart()
+        assert {"$160=0.100", "$810=5000.000"} <= set(board.line("$$").splitlines())
+        assert board.report()["MPos"].startswith("0.250,")
+        for line in ("G91 G1 X0.25 F3000", "G4 P0.05"):
+            assert board.line(line) == "ok"
+        assert place(board) == 20 + 8 and board.report()["MPos"].startswith("0.500,")
+        assert not board.faults
+    with model_engine(PARAMETERS, HZ) as engine:
+        board = GrblBoard(engine, elf)
+        assert board.line("$162=0.1") == "[MSG:$162: the core has no trackers]\nerror:3"
+        assert not board.faults
 
 
 def test_every_chip_has_an_image() -> None:

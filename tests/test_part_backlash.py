@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from passo import cli
 from passo.failure import BadInputError
+from passo.host_machine import Machine
 from passo.machine_file import MachineFile, read_machine
 from passo.part import Played, core_of, play_part, read_part
 from passo.part_judge import beside
@@ -108,6 +109,7 @@ def test_the_command(tmp_path: Path, engine: str) -> None:
 
 
 GOOD = AXIS + "backlash = 0.1\n"
+PINS = "[pins]\nstep_high = 0.00002\nstep_low = 0.000019\n"
 
 
 @pytest.mark.parametrize(
@@ -123,6 +125,14 @@ GOOD = AXIS + "backlash = 0.1\n"
             "axis 1: backlash: speed must be less than 125000 steps/s, a step per 128 clocks",
         ),
         ('kinematics = "corexy"\n' + GOOD + AXIS, "axis 1: backlash: the axis shares its motors"),
+        (  # 25,641 steps/s; the take-up makes 800
+            PINS + GOOD.replace("= 100\n", "= 315\n", 1),
+            "axis 1: backlash: speed must be at most 24841 steps/s: the take-up adds to it",
+        ),
+        (
+            PINS + "dir_hold = 0.0001\n" + GOOD + "take_up = 1_600_000\n",
+            "axis 1: backlash: acceleration must be at most 1.02041e+08 steps/s^2: a step while DIR turns",
+        ),
     ],
 )
 def test_bad_input(tmp_path: Path, text: str, told: str) -> None:
@@ -133,16 +143,35 @@ def test_bad_input(tmp_path: Path, text: str, told: str) -> None:
     assert told in str(refused.value)
 
 
-@pytest.mark.parametrize(
-    "command",
-    [["make"], ["console", "--grbl", "--machine"], ["serve", "unused", "--machine"]],
-    ids=["make", "console", "serve"],
-)
-def test_others_refuse_it(tmp_path: Path, command: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    """The firmware, which does not configure trackers, must not turn with the play of such a machine."""
+REFUSED = "axis 1: backlash: only passo run, make and console --grbl take backlash up"
+
+
+def test_others_refuse_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """What does not configure trackers must not turn with the play of such a machine."""
     machine, _ = write(tmp_path)
-    assert cli.main([*command, str(machine)]) == 2
-    assert "axis 1: backlash: only passo run with G-code takes backlash up" in capsys.readouterr().err
+    assert cli.main(["serve", "unused", "--machine", str(machine)]) == 2
+    assert REFUSED in capsys.readouterr().err
+    with pytest.raises(BadInputError, match=REFUSED):
+        Machine.from_file(machine)
+
+
+@pytest.mark.parametrize(
+    ("head", "told"),
+    [
+        ('board = "hx8k"\n', "backlash: the firmware for STM32F103C8 has no trackers"),
+        ('host = "linuxcnc"\n', "backlash: LinuxCNC has its own, BACKLASH in machine.ini"),
+    ],
+)
+def test_make_refuses_it_of_others(
+    tmp_path: Path, head: str, told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The small chip has no trackers, and LinuxCNC moves the axes itself."""
+    machine, _ = write(tmp_path)
+    text = machine.read_text()
+    machine.write_text(head + (text.replace("clock_hz = 16_000_000\n", "") if "board" in head else text))
+    out = tmp_path / "out"
+    assert cli.main(["make", str(machine), "--out", str(out), "--no-build"]) == 2
+    assert told in capsys.readouterr().err and not out.exists()
 
 
 def test_parts_of_the_core(tmp_path: Path) -> None:

@@ -100,7 +100,7 @@ def _grbl(options: argparse.Namespace) -> None:
 
     if not options.machine:
         raise BadInputError("--grbl needs --machine MACHINE.toml (docs/gcode.md)")
-    machine = read_machine(options.machine)
+    machine = read_machine(options.machine, takes_up=True)
     settings = SettingsFile(options.settings) if options.settings else None
     tools = lengths(read_tools(options.tools))
     with turning_machine_at(options.engine, machine) as (engine, spindle):

@@ -108,6 +108,8 @@ def default_settings(machine: MachineFile) -> Any:
             ("SPEED", "speed", limits.speed, SECONDS_PER_MINUTE),
             ("ACCELERATION", "acceleration", limits.acceleration, 1),
             ("TRAVEL", "travel", ends[axis].travel, 1),
+            ("BACKLASH", "backlash", ends[axis].backlash, 1),
+            ("TAKE_UP", "take_up", ends[axis].take_up, 1),
             ("JERK", "jerk", limits.jerk if machine.settings.profile == "jerk" else 0, 1),
         ):
             setting = getattr(c, f"PASSO_GRBL_{name}")

@@ -28,6 +28,8 @@ AT_SPEED = 1.05  # of the wanted speed, either way
 
 def linuxcnc_files(machine: MachineFile) -> dict[str, list[str]]:
     """The lines of each file. Raises BadInputError for a machine that the component does not drive."""
+    if machine.trackers:
+        raise BadInputError(f"{machine.path}: backlash: LinuxCNC has its own, BACKLASH in {INI}")
     if machine.settings.motors.rows:
         raise BadInputError(
             f"{machine.path}: the motors are {', '.join(machine.motors)}; "

@@ -233,6 +233,6 @@ def simulated(machine: MachineFile) -> Iterator[SimulatedPort]:
 
 def check_machine(path: Path, port: Path | None) -> None:
     """Check the machine of a file at a serial port; without one, a simulated one."""
-    machine = read_machine(path)
+    machine = read_machine(path, takes_up=True)
     with SerialPort(port) if port else simulated(machine) as connected:
         check(machine, connected)

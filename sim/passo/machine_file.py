@@ -63,6 +63,7 @@ HOSTS = ("stm32", "linuxcnc")
 PROFILES = ("linear", "cosine", "sigmoid", "jerk")
 TRAVEL = 200  # mm
 RATIO_ONE = 1 << 16  # counts per step
+MILLION = 1_000_000
 FOLLOWING_COUNTS = 65535  # of a following error, at most
 COUNT_CLOCKS = ENCODER_FILTER + 2  # from a count of an encoder to the next
 WAITING_STEPS = 2
@@ -296,12 +297,13 @@ def _machine(path: Path, data: Table, takes_up: bool) -> MachineFile:
     deviation = _number(data, "junction_deviation", JUNCTION_DEVIATION)
     settings = PathSettings(axes, clock_hz, junction_deviation=deviation, profile=profile, motors=motors)
     check_pins(settings, timing)
+    tracking = _Tracking(clock_hz, parameters_for(count).axes, timing)
     for number, (axis, end) in enumerate(zip(axes, ends, strict=True), 1):
         within(f"axis {number}", lambda axis=axis, end=end: _check_encoders(axis, end, clock_hz))
         shared = number - 1 in KINEMATICS[kinematics]
         within(
             f"axis {number}",
-            lambda axis=axis, end=end, shared=shared: _check_backlash(axis, end, count, clock_hz, shared),
+            lambda axis=axis, end=end, shared=shared: _check_backlash(axis, end, shared, tracking),
         )
     if switches.soft_limits and not any(end.home for end in ends):
         raise BadValueError("soft_limits: no axis has a home")
@@ -603,7 +605,7 @@ def _ends(table: Table, takes_up: bool) -> AxisEnds:
     if ends.homing_switch not in (None, *switches):
         raise BadValueError(f'home = "{home}" needs "home" or "{ends.homing_switch}" in switches')
     if given := [key for key in BACKLASH_KEYS if key in table and not takes_up]:
-        raise BadValueError(f"{given[0]}: only passo run with G-code takes backlash up")
+        raise BadValueError(f"{given[0]}: only passo run, make and console --grbl take backlash up")
     if ends.take_up and not ends.backlash:
         raise BadValueError("take_up needs backlash")
     return ends
@@ -651,11 +653,33 @@ def _take_up(axis: PathAxis, end: AxisEnds) -> tuple[int, Fraction, Fraction]:
     """Steps of the backlash; speed and acceleration of the tracker, steps/s, steps/s^2."""
     scale, speed = Fraction(axis.steps_per_mm), Fraction(axis.speed)
     acceleration = Fraction(end.take_up) if end.take_up else Fraction(axis.acceleration)
-    return round(end.backlash * float(scale)), speed * scale, acceleration * scale
+    width = Fraction(round(end.backlash * MILLION), MILLION)
+    return int(width * scale + Fraction(1, 2)), speed * scale, acceleration * scale
 
 
-def _check_backlash(axis: PathAxis, end: AxisEnds, count: int, clock_hz: int, shared: bool) -> None:
-    """The trackers of a core of this many axes or more can take it up."""
+@dataclass(frozen=True)
+class _Tracking:
+    """What limits trackers."""
+
+    clock_hz: int
+    axes: int  # of the core
+    pins: PinTiming
+
+    def check(self, steps: int, speed: Fraction, acceleration: Fraction) -> None:
+        """As check_track() of passo_grbl_machine.c: both hands, and DIR, which turns meanwhile."""
+        check_limits(speed, acceleration, self.axes, self.clock_hz)
+        pins, hz = self.pins, self.clock_hz
+        fastest = hz / (pins.step_high + pins.step_low)
+        take_up = math.sqrt(acceleration * steps)
+        if (most := max(fastest - take_up, fastest / 2)) < speed:
+            raise BadValueError(f"speed must be at most {most:g} steps/s: the take-up adds to it")
+        turn = sum(vars(pins).values())
+        if (most := 2 * (hz / turn) ** 2) < acceleration:
+            raise BadValueError(f"acceleration must be at most {most:g} steps/s^2: a step while DIR turns")
+
+
+def _check_backlash(axis: PathAxis, end: AxisEnds, shared: bool, tracking: _Tracking) -> None:
+    """The trackers of the core can take it up."""
     if not end.backlash:
         return
     if shared:
@@ -663,8 +687,7 @@ def _check_backlash(axis: PathAxis, end: AxisEnds, count: int, clock_hz: int, sh
     steps, speed, acceleration = _take_up(axis, end)
     if not 1 <= steps <= BACKLASH_MAX:
         raise BadValueError(f"backlash is {steps} steps; must be 1 to {BACKLASH_MAX}")
-    axes = parameters_for(count).axes
-    within("backlash", lambda: check_limits(speed, acceleration, axes, clock_hz))
+    within("backlash", lambda: tracking.check(steps, speed, acceleration))
 
 
 def _number(table: Table, key: str, default: float) -> float:

@@ -43,7 +43,8 @@ NOT_BUILT = "  no images: --no-build"
 FAILED_BITSTREAM = "  bitstream  NONE: see above"
 SPI_MHZ = (18, 9)  # of the firmware: the fastest that a core can take, which is a quarter of its clock
 SPEED_AT, OFFSET_AT = 110, 170  # first settings of the speeds and of the offsets
-LARGE_AT = 342  # first of those that only the large chip has
+BACKLASH_AT = 160
+LARGE_AT = 342  # first of those that only the large chip has; as are those of backlash
 NO_SETTING = 0xFF
 REVERSE = 1  # the output that a laser does not have
 OUTPUTS = ("spindle on", "spindle reverse", "flood coolant", "mist coolant")  # bits 0 to 3
@@ -65,7 +66,7 @@ def make_machine(path: Path, out: Path | None = None, build: bool = True) -> boo
     Returns whether there is a bitstream that meets its clocks. Raises BadInputError, or Failure for a tool.
     """
     need_repository("passo make")
-    machine = read_machine(path)
+    machine = read_machine(path, takes_up=True)
     if machine.host == "linuxcnc":
         return _make_linuxcnc(machine, out or _folder(path), build)
     if not machine.board:
@@ -164,6 +165,10 @@ def _check_firmware(machine: MachineFile) -> None:
             f"{machine.path}: the motors are {', '.join(machine.motors)}; "
             f'the firmware for {chip} has one for each axis, chip = "{LARGE}" has others'
         )
+    if machine.trackers and chip != LARGE:
+        raise BadInputError(
+            f'{machine.path}: backlash: the firmware for {chip} has no trackers, chip = "{LARGE}" has'
+        )
     if machine.encoders and chip != LARGE:
         raise BadInputError(f'{machine.path}: the firmware for {chip} has no encoders, chip = "{LARGE}" has')
     if machine.spindle and chip != LARGE:
@@ -228,19 +233,21 @@ def _text(millionths: int) -> str:
 
 def settings_lines(machine: MachineFile) -> list[str]:
     """`$n=` of all settings. No line needs a later one: speeds are low until the pins have their times,
-    offsets are 0 until there is a pull-off."""
+    offsets are 0 until there is a pull-off, backlash until the axes have their limits."""
     c, axes, counts = planner(), len(machine.settings.axes), setting_counts(machine)
     made, whole = default_settings(machine), ffi().new("bool *")
     values = {}
     while (number := c.passo_grbl_setting_number(len(values), counts, whole)) != NO_SETTING:
         values[number] = c.passo_grbl_setting(made, number, counts)[0]
-    if machine.chip == SMALL:
-        values = {number: value for number, value in values.items() if number < LARGE_AT}
     speeds = range(SPEED_AT, SPEED_AT + axes)
+    backlash = range(BACKLASH_AT, BACKLASH_AT + axes)
+    if machine.chip == SMALL:
+        values = {n: value for n, value in values.items() if n < LARGE_AT and n not in backlash}
     offsets = range(OFFSET_AT, OFFSET_AT + len(machine.motors))
     homing = 22  # before soft limits
-    order = sorted(values, key=lambda number: (number in speeds, number != homing, number))
+    order = sorted(values, key=lambda n: (n in backlash, n in speeds, n != homing, n))
     return [
+        *(f"${number}=0" for number in values if number in backlash),
         *(f"${number}=1" for number in speeds),
         *(f"${number}=0" for number in values if number in offsets),
         *(f"${number}={_text(values[number])}" for number in order),

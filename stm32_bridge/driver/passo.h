@@ -90,6 +90,11 @@ struct passo_axis_memory {
 	bool limit_soft;          /* its limit switches stop softly */
 	bool homed;
 	bool backward; /* direction of the last line that moves it */
+#ifndef PASSO_WITHOUT_TRACKERS
+	uint16_t backlash; /* of its tracker, and the target of that while the path goes up, in the core */
+	int32_t track;
+	uint32_t tracked_from; /* position of the tracker in the core where it is 0 for the program; wraps */
+#endif
 };
 
 /* A target that can change during the motion; see passo_goto.h. */
@@ -136,7 +141,10 @@ struct passo_task {
 	bool inside;   /* the driver's own calls */
 	bool armed;    /* its trigger may be armed */
 	bool optional; /* of a probe */
-	uint8_t left;  /* axes to home, including the current one */
+#ifndef PASSO_WITHOUT_TRACKERS
+	bool settles; /* its trigger has stopped trackers, which go on to their targets */
+#endif
+	uint8_t left; /* axes to home, including the current one */
 	const struct passo_home *home;
 	/* of a goto: its next motion, from rest; a program without a goto does not link it */
 	enum passo_error (*go_on)(struct passo *passo);
@@ -238,6 +246,10 @@ struct passo {
 	bool probe_fitted;          /* the probe is configured */
 	bool probe_inverted;
 	struct passo_task task;
+#ifndef PASSO_WITHOUT_TRACKERS
+	uint8_t tracked; /* axes whose trackers follow a target, or did until they were stopped */
+	uint8_t parked;  /* of these, axes that wait at a limit until the path leaves it */
+#endif
 #ifndef PASSO_CARTESIAN
 	struct passo_square square;
 #endif

@@ -57,6 +57,15 @@ static inline enum passo_error passo_driver_take_off_trackers(
 }
 #else
 enum passo_error passo_driver_take_off_trackers(struct passo *passo, uint32_t *positions, bool once);
+/* Before a task: trackers that follow a target now go on after the stops of its trigger. */
+enum passo_error passo_driver_note_trackers(struct passo *passo);
+/* Sends a tracker that is at rest `steps` further, as fast and steep as that; the channel moves meanwhile. */
+enum passo_error passo_driver_track_by(
+    struct passo *passo, uint8_t axis, int32_t steps, uint64_t speed, uint64_t acceleration);
+/* A tracker that is at its target is at `position` now. */
+enum passo_error passo_driver_track_is_at(struct passo *passo, uint8_t axis, int32_t position);
+/* The path has ended, and has moved these axes: those at a limit take up their backlash as all others. */
+void passo_driver_unpark(struct passo *passo, uint8_t moved);
 #endif
 /* A position of the core as the program counts it. */
 int32_t passo_driver_offset(const struct passo *passo, unsigned axis, int32_t position);

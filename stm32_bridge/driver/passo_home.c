@@ -29,6 +29,13 @@ static enum passo_error check_home(const struct passo *passo, const struct passo
 		return of_plan(PASSO_PLAN_NO_SPEED);
 	if (home->acceleration == 0u)
 		return of_plan(PASSO_PLAN_NO_ACCELERATION);
+#ifndef PASSO_WITHOUT_TRACKERS
+	if (home->track && !passo->has_trackers)
+		return PASSO_ERROR_NO_TRACKERS;
+	if (home->track ? home->track->axis != home->axis || home->racking != 0u
+	                : home->axis >= passo->machine.axes)
+		return PASSO_ERROR_ARGUMENT;
+#endif
 #ifndef PASSO_CARTESIAN
 	if (passo_driver_squares(home))
 		return passo_driver_check_square(passo, home);
@@ -66,7 +73,7 @@ static void set_homed(struct passo *passo, const struct passo_home *home, bool h
 #ifdef PASSO_CARTESIAN
 	passo->axis[home->axis].homed = homed;
 #else
-	for (uint32_t motor = 0; motor < passo->machine.axes; motor++) {
+	for (uint32_t motor = 0; motor < passo->axes; motor++) {
 		if (sign_of(home, motor) != 0)
 			passo->axis[motor].homed = homed;
 	}
@@ -88,7 +95,7 @@ static enum passo_error go(
 #ifdef PASSO_CARTESIAN
 	move.steps[home->axis] = steps;
 #else
-	for (uint32_t motor = 0; motor < passo->machine.axes; motor++)
+	for (uint32_t motor = 0; motor < passo->axes; motor++)
 		move.steps[motor] = sign_of(home, motor) * steps;
 #endif
 	passo->task.phase = phase;
@@ -169,11 +176,41 @@ static enum passo_error set_position(struct passo *passo, int32_t position)
 #endif
 }
 
+#ifndef PASSO_WITHOUT_TRACKERS
+/* The tracker is at its target after the pull-off: its place from the latched edge is exact. */
+static enum passo_error set_track(struct passo *passo)
+{
+	const struct passo_home *home = passo->task.home;
+	struct passo_trigger_report report;
+	int32_t now[PASSO_AXES_MAX];
+	enum passo_error error = passo_read_trigger(passo, &report);
+
+	if (error == PASSO_OK)
+		error = passo_positions(passo, now);
+	if (error == PASSO_OK)
+		error = passo_driver_track_is_at(passo, home->axis,
+		    (int32_t)((uint32_t)home->position + (uint32_t)now[home->axis]
+		              - (uint32_t)report.positions[home->axis]));
+	if (error == PASSO_OK)
+		error = passo_configure_tracker(passo, home->track);
+	if (error == PASSO_OK)
+		set_homed(passo, home, true);
+	return error;
+}
+#endif
+
 /* The edge was `past` steps ago: it is at home->position. */
 static enum passo_error set_home(struct passo *passo, int32_t past)
 {
 	const struct passo_home *home = passo->task.home;
 	const int32_t away = (int32_t)home->pull_off;
+#ifndef PASSO_WITHOUT_TRACKERS
+	if (home->track) {
+		const int32_t way = away == 0 ? 0 : (home->distance < 0 ? away : -away) - past;
+
+		return go(passo, PASSO_HOME_PULL_OFF, NO_EDGE, way, home->speed);
+	}
+#endif
 	const enum passo_error error =
 	    set_position(passo, (int32_t)((uint32_t)home->position + (uint32_t)past));
 
@@ -200,6 +237,13 @@ enum passo_error passo_driver_home_next(struct passo *passo, const struct passo_
 #endif
 	if (passo->task.phase == PASSO_HOME_BACK_OFF)
 		return approach_slowly(passo);
+#ifndef PASSO_WITHOUT_TRACKERS
+	if (passo->task.phase == PASSO_HOME_PULL_OFF && passo->task.home->track) {
+		const enum passo_error error = set_track(passo);
+
+		return error == PASSO_OK ? end_axis(passo) : error;
+	}
+#endif
 	if (passo->task.phase == PASSO_HOME_PULL_OFF)
 		return end_axis(passo);
 	if (!report->fired)

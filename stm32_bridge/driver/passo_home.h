@@ -13,6 +13,7 @@
 #define PASSO_HOME_H
 
 #include "passo_inputs.h"
+#include "passo_track.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -40,6 +41,11 @@ struct passo_home {
 	uint64_t speed, slow_speed; /* UQ32.32 steps/s */
 	uint64_t acceleration;      /* UQ32.32 steps/s^2 */
 	int32_t position;           /* of the edge */
+#ifndef PASSO_WITHOUT_TRACKERS
+	/* Of a motor without lines: its tracker homes it, with these limits in the end. `position` is that of
+	 * passo_track_to() then; null: the path homes it. It is not for squaring. */
+	const struct passo_track *track;
+#endif
 };
 
 /* Homes `count` axes, one after the other; homes[] must stay valid until the end. Two frames, and two periods

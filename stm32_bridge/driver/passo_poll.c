@@ -117,7 +117,13 @@ static enum passo_error see_end(struct passo *passo)
 		return miss(passo, error);
 	passo->misses = 0;
 	const bool is_wrong = passo->expects == PASSO_EXPECT_POSITIONS && !is_at(passo, positions);
+#ifndef PASSO_WITHOUT_TRACKERS
+	const uint8_t moved = passo->movers;
+#endif
 	passo_driver_ended(passo, positions);
+#ifndef PASSO_WITHOUT_TRACKERS
+	passo_driver_unpark(passo, moved);
+#endif
 	return is_wrong ? tell(passo, PASSO_ERROR_POSITION) : PASSO_OK;
 }
 

@@ -135,6 +135,11 @@ enum passo_error passo_zero(struct passo *passo)
 	}
 	if (error != PASSO_OK)
 		return passo_driver_moving(error);
+#ifndef PASSO_WITHOUT_TRACKERS
+	passo->tracked = passo->parked = 0;
+	for (unsigned i = 0; i < passo->axes; i++)
+		passo->axis[i].tracked_from = 0;
+#endif
 	const int32_t zeros[PASSO_AXES_MAX] = {0};
 	for (unsigned i = 0; i < passo->axes; i++)
 		passo->axis[i].offset = 0;

@@ -16,6 +16,19 @@ static enum passo_error settle(struct passo *passo, enum passo_error error)
 	return error;
 }
 
+/* The path makes the move, or the tracker of the axis that is homed. */
+static enum passo_error set_off(struct passo *passo, const struct passo_move_by_speed *move)
+{
+#ifndef PASSO_WITHOUT_TRACKERS
+	const struct passo_home *home = passo->task.home;
+
+	if (passo->task.kind == PASSO_TASK_HOME && home->track)
+		return passo_driver_track_by(
+		    passo, home->axis, move->steps[home->axis], move->speed, move->acceleration);
+#endif
+	return passo_move_by_speed(passo, move);
+}
+
 enum passo_error passo_driver_seek(
     struct passo *passo, const struct passo_trigger_config *trigger, const struct passo_move_by_speed *move)
 {
@@ -32,7 +45,7 @@ enum passo_error passo_driver_seek(
 			error = PASSO_ERROR_SWITCH_LEVEL;
 	}
 	if (error == PASSO_OK)
-		error = passo_move_by_speed(passo, move);
+		error = set_off(passo, move);
 	return error == PASSO_OK ? PASSO_PENDING : error;
 }
 
@@ -45,6 +58,10 @@ enum passo_error passo_driver_begin(struct passo *passo, struct passo_task task,
 		error = passo_driver_check_source(passo, trigger->source, trigger->axis);
 	if (error == PASSO_OK && !task.go_on && !passo->stop_time_known)
 		error = PASSO_ERROR_NO_STOP_TIME; /* after a reset the core stops within 0.1 ms */
+#ifndef PASSO_WITHOUT_TRACKERS
+	if (error == PASSO_OK && !task.go_on)
+		error = passo_driver_note_trackers(passo);
+#endif
 	if (error != PASSO_OK)
 		return error;
 	passo->task = task;
@@ -83,30 +100,72 @@ static enum passo_error leave_limit(
 }
 #endif
 
+#ifdef PASSO_WITHOUT_TRACKERS
+static bool has_settled(const struct passo *passo)
+{
+	(void)passo;
+	return false;
+}
+
+static enum passo_error settle_trackers(const struct passo *passo)
+{
+	(void)passo;
+	return PASSO_OK;
+}
+#else
+/* The trackers that the trigger has stopped are at their targets again: positions are exact. */
+static bool has_settled(struct passo *passo)
+{
+	const bool settled = passo->task.settles;
+
+	passo->task.settles = false;
+	return settled;
+}
+
+/* PENDING: they are on their way. */
+static enum passo_error settle_trackers(struct passo *passo)
+{
+	if (passo->task.kind == PASSO_TASK_HOME && passo->task.home->track)
+		passo->tracked =
+		    (uint8_t)(passo->tracked & ~(1u << passo->task.home->axis)); /* it is there */
+	const enum passo_error error = passo_track_again(passo);
+
+	if (error != PASSO_OK || passo->expects == PASSO_EXPECT_NOTHING)
+		return error;
+	passo->task.settles = true;
+	return PASSO_PENDING;
+}
+#endif
+
 /* A motion of the task has ended. */
 static enum passo_error next(struct passo *passo)
 {
 	struct passo_trigger_report report = {.fired = false};
 	enum passo_error error = PASSO_OK;
+	const bool settled = has_settled(passo);
 
-	if (passo->task.armed)
+	if (passo->task.armed || settled)
 		error = passo_read_trigger(passo, &report);
 	if (error != PASSO_OK)
 		return error;
 #ifndef PASSO_CARTESIAN
-	if (passo->task.kind == PASSO_TASK_HOME && passo_driver_squares(passo->task.home)) {
+	if (!settled && passo->task.kind == PASSO_TASK_HOME && passo_driver_squares(passo->task.home)) {
 		bool by_limit;
 
 		error = leave_limit(passo, &report, &by_limit);
+		if (error == PASSO_OK && by_limit)
+			error = settle_trackers(passo);
 		if (error != PASSO_OK || by_limit)
 			return error == PASSO_OK ? passo_driver_home_next(passo, &report) : error;
 	}
 #endif
 	if (passo_driver_is_stopped(passo) && !report.fired)
 		return cause(passo);
-	if (report.fired) {
+	if (report.fired && !settled) {
 		passo->task.armed = false;
 		error = passo_clear(passo);
+		if (error == PASSO_OK)
+			error = settle_trackers(passo);
 	}
 	if (error != PASSO_OK)
 		return error;

@@ -25,10 +25,17 @@ struct passo_track {
 /* Sets the limits of a tracker, rounded down to 2^-32 steps per tick (per tick). At rest or stopped. A frame.
  * Errors: TRACKER_LIMITS, MOVING. */
 enum passo_error passo_configure_tracker(struct passo *passo, const struct passo_track *track);
-/* Sends it to a target, in steps of its own since passo_zero(), at any time. Four frames. */
+/* Sends it to a target, in steps of its own since passo_zero(), or from its home, at any time. Four frames.
+ */
 enum passo_error passo_track_to(struct passo *passo, const struct passo_track *track, int32_t target);
 /* Slows it down; it rests until its next target. Two frames. */
 enum passo_error passo_untrack(struct passo *passo, uint8_t axis);
+/* At rest, as after passo_clear(): trackers that a stop has ended follow their targets again. Until all are
+ * there, passo_is_moving(); then passo_poll() has read the exact positions, so call this before the next
+ * motion. A tracker that would step toward an active limit goes to the target of the other direction, and
+ * keeps that until a motion that moves the axis has ended. Homing and probing do the same after each of their
+ * stops. A frame if there is nothing to do; else at most six, and two for each axis at a limit. */
+enum passo_error passo_track_again(struct passo *passo);
 
 struct passo_track_reading {
 	int32_t position; /* steps of the tracker; after a hard stop up to 7 of them were not made */

@@ -93,6 +93,25 @@ static void tell_skewed(struct passo_grbl *grbl)
 }
 #endif
 
+/* From the back-off to the edge the backlash is taken up before: steps that the path makes in twice the time
+ * that this takes at its highest speed. Motors that square have their room already. */
+static uint32_t run_up(const struct passo_grbl *grbl, uint8_t axis)
+{
+#ifndef PASSO_WITHOUT_TRACKERS
+	const struct passo_track track = passo_grbl_track(grbl, axis);
+	const uint64_t speed = passo_grbl_take_up_speed(&track);
+
+	if (track.backlash > 0 && !squares(grbl, axis)) {
+		const uint64_t steps = passo_mul_div_ceil(
+		    2u * (uint64_t)track.backlash, speed_of(grbl, axis, PASSO_GRBL_HOME_FEED), speed);
+
+		return steps < PASSO_SUBSTEPS_MAX / 8u ? (uint32_t)steps + 1u : PASSO_SUBSTEPS_MAX / 8u;
+	}
+#endif
+	(void)grbl, (void)axis;
+	return 0;
+}
+
 static struct passo_home home_of(const struct passo_grbl *grbl, uint8_t axis)
 {
 	const struct passo_grbl_settings *settings = &grbl->stored.settings;
@@ -114,7 +133,7 @@ static struct passo_home home_of(const struct passo_grbl *grbl, uint8_t axis)
 	            : low                             ? PASSO_TRIGGER_SOURCE_LIMIT_LOW
 	                                              : PASSO_TRIGGER_SOURCE_LIMIT_HIGH,
 	    .distance = low ? -distance : distance,
-	    .back_off = off > 0 ? (uint32_t)off : 1u,
+	    .back_off = (off > 0 ? (uint32_t)off : 1u) + run_up(grbl, axis),
 	    .pull_off = (uint32_t)off,
 	    .speed = speed_of(grbl, axis, PASSO_GRBL_HOME_SEEK),
 	    .slow_speed = speed_of(grbl, axis, PASSO_GRBL_HOME_FEED),

@@ -11,8 +11,14 @@
 #define ONE (UINT64_C(1) << 32)
 #define SECONDS_PER_MINUTE 60u
 #define MILLION ((uint64_t)PASSO_GCODE_MILLION)
+#define MILLI UINT64_C(1000)
 #define PWM_HZ 20000u
 #define ALWAYS 255 /* of the time until drives are switched off */
+
+/* Settings of X that messages name. */
+#define SPEED_NUMBER 110u
+#define BACKLASH_NUMBER 160u
+#define TAKE_UP_NUMBER 810u
 
 /* UQ32.32 of millionths. */
 static uint64_t fixed(int64_t millionths, uint32_t divisor)
@@ -281,6 +287,164 @@ static bool can_square(struct passo_grbl *grbl)
 }
 #endif
 
+#ifdef PASSO_WITHOUT_TRACKERS
+static enum passo_gcode_error check_backlash(const struct passo_grbl *grbl, struct timing timing)
+{
+	(void)grbl, (void)timing;
+	return PASSO_GCODE_OK;
+}
+
+static enum passo_error apply_backlash(const struct passo_grbl *grbl)
+{
+	(void)grbl;
+	return PASSO_OK;
+}
+#else
+/* Of its backlash, to nearest. */
+static uint64_t backlash_steps(const struct passo_grbl *grbl, uint8_t axis)
+{
+	const struct passo_grbl_settings *settings = &grbl->stored.settings;
+	const uint64_t twice = passo_mul_div(2u * (uint64_t)settings->axis[PASSO_GRBL_BACKLASH][axis],
+	    (uint64_t)settings->axis[PASSO_GRBL_STEPS][axis], MILLION * MILLION);
+
+	return (twice + 1u) / 2u;
+}
+
+struct passo_track passo_grbl_track(const struct passo_grbl *grbl, uint8_t axis)
+{
+	const struct passo_path_axis *limits = &grbl->path.axis[axis];
+	const int64_t own = grbl->stored.settings.axis[PASSO_GRBL_TAKE_UP][axis];
+
+	return (struct passo_track){.axis = axis,
+	    .backlash = (uint16_t)backlash_steps(grbl, axis),
+	    .top_speed = passo_mul_div(limits->speed, limits->steps_per_mm, ONE),
+	    .acceleration =
+		passo_mul_div(own > 0 ? fixed(own, 1) : limits->acceleration, limits->steps_per_mm, ONE)};
+}
+
+uint64_t passo_grbl_take_up_speed(const struct passo_track *track)
+{
+	const uint64_t most =
+	    passo_isqrt128(passo_multiply(track->acceleration, (uint64_t)track->backlash << 32));
+
+	return most < track->top_speed ? most : track->top_speed;
+}
+
+/* A bound of a setting, per second or `per` of them: `most`, or `least`, in steps, UQ32.32. */
+static enum passo_gcode_error refuse(
+    struct passo_grbl *grbl, unsigned number, uint8_t axis, uint64_t most, uint64_t least, uint32_t per)
+{
+	const uint64_t scale = grbl->path.axis[axis].steps_per_mm;
+	const uint64_t bound = least > 0 ? passo_mul_div_ceil(least, per * MILLI, scale)
+	                                 : passo_mul_div(most, per * MILLI, scale);
+
+	passo_grbl_say(grbl, "[MSG:With backlash $");
+	passo_grbl_say_number(grbl, number + axis);
+	passo_grbl_say(grbl, least > 0 ? " is at least " : " is at most ");
+	passo_grbl_say_thousandths(grbl, (int64_t)(bound * MILLI));
+	passo_grbl_say(grbl, "]\r\n");
+	return PASSO_GCODE_TOO_FAST;
+}
+
+static enum passo_gcode_error refuse_backlash(struct passo_grbl *grbl, uint8_t axis, const char *why)
+{
+	passo_grbl_say(grbl, "[MSG:$");
+	passo_grbl_say_number(grbl, BACKLASH_NUMBER + axis);
+	passo_grbl_say(grbl, why);
+	return PASSO_GCODE_STATEMENT;
+}
+
+static bool shares_motors(const struct passo_grbl *grbl, uint8_t axis)
+{
+#ifdef PASSO_CARTESIAN
+	(void)grbl, (void)axis;
+#else
+	const struct passo_motors *motors = &grbl->path.motors;
+
+	for (unsigned motor = 0; motor < motors->count; motor++) {
+		const unsigned axes = (unsigned)motors->plus[motor] | motors->minus[motor];
+
+		if ((axes >> axis & 1u) != 0u && (axes & (axes - 1u)) != 0u)
+			return true;
+	}
+#endif
+	return false;
+}
+
+/* What the pins can do with both hands at their speeds, and a tracker: while DIR turns it makes a step at
+ * most, so that places are left for those of the path. */
+static enum passo_gcode_error check_track(
+    struct passo_grbl *grbl, const struct passo_track *track, struct timing timing)
+{
+	const uint64_t hz = grbl->path.machine.clock_hz, both = timing.pulse + timing.turn;
+	const uint64_t ticks = /* per second */
+	    passo_mul_div(hz, ONE, PASSO_TRACKER_TICK(passo_axes(grbl->player->feed->passo)));
+	const uint64_t pins = passo_mul_div(hz, ONE, 2u * timing.pulse);
+	const uint64_t take_up = passo_grbl_take_up_speed(track);
+	const uint64_t swift = 2u * take_up < pins ? pins - take_up : pins / 2u;
+	const uint64_t top = swift < ticks ? swift : ticks - 1u;
+	const uint64_t turn = passo_mul_div(passo_mul_div(hz, ONE, both), hz, 2u * both);
+	const uint64_t quick = passo_mul_div(track->top_speed, ticks, ONE);
+	const uint64_t least = passo_mul_div(ticks, ticks, ONE) / ONE + ticks / ONE + 2u;
+
+	if (track->top_speed > top)
+		return refuse(grbl, SPEED_NUMBER, track->axis, top, 0, SECONDS_PER_MINUTE);
+	if (track->acceleration > (turn < quick ? turn : quick))
+		return refuse(grbl, TAKE_UP_NUMBER, track->axis, turn < quick ? turn : quick, 0, 1);
+	if (track->acceleration < least)
+		return refuse(grbl, TAKE_UP_NUMBER, track->axis, 0, least, 1);
+	return PASSO_GCODE_OK;
+}
+
+static enum passo_gcode_error check_axis(struct passo_grbl *grbl, uint8_t axis, struct timing timing)
+{
+	const struct passo_track track = passo_grbl_track(grbl, axis);
+	const uint64_t steps = backlash_steps(grbl, axis);
+
+	if (grbl->stored.settings.axis[PASSO_GRBL_BACKLASH][axis] == 0)
+		return PASSO_GCODE_OK;
+	if (!grbl->player->feed->passo->has_trackers)
+		return refuse_backlash(grbl, axis, ": the core has no trackers]\r\n");
+	if (shares_motors(grbl, axis))
+		return refuse_backlash(grbl, axis, ": the axis shares its motors]\r\n");
+	if (steps < 1u || steps > UINT16_MAX)
+		return refuse_backlash(grbl, axis, " is 1 to 65535 steps]\r\n");
+	return check_track(grbl, &track, timing);
+}
+
+static enum passo_gcode_error check_backlash(struct passo_grbl *grbl, struct timing timing)
+{
+	enum passo_gcode_error error = PASSO_GCODE_OK;
+
+	for (uint8_t axis = 0; error == PASSO_GCODE_OK && axis < grbl->path.machine.axes; axis++)
+		error = check_axis(grbl, axis, timing);
+	return error;
+}
+
+/* Those that have taken up backlash go to their place without, within the limits that they have. */
+static enum passo_error apply_backlash(struct passo_grbl *grbl)
+{
+	struct passo *passo = grbl->player->feed->passo;
+	enum passo_error error = PASSO_OK;
+
+	for (unsigned i = 0; error == PASSO_OK && i < 2u * passo_grbl_motors(grbl); i++) {
+		const bool aims = i >= passo_grbl_motors(grbl); /* when all have their limits */
+		const uint8_t motor = (uint8_t)(i % passo_grbl_motors(grbl));
+		struct passo_track track = passo_grbl_track(grbl, (uint8_t)passo_grbl_axis_of(grbl, motor));
+
+		track.axis = motor;
+		if (track.backlash > 0 && !aims)
+			error = passo_configure_tracker(passo, &track);
+		else if (aims && (track.backlash > 0 || ((uint32_t)passo->tracked >> motor & 1u) != 0u))
+			error = passo_track_to(passo, &track, 0);
+	}
+	if (error == PASSO_OK)
+		error = passo_track_again(passo);
+	grbl->stopping = grbl->stopping || passo_is_moving(passo);
+	return error;
+}
+#endif
+
 enum passo_gcode_error passo_grbl_apply(struct passo_grbl *grbl)
 {
 	const struct passo_grbl_settings *settings = &grbl->stored.settings;
@@ -298,6 +462,9 @@ enum passo_gcode_error passo_grbl_apply(struct passo_grbl *grbl)
 	const enum passo_gcode_error pins = check_pins(grbl, timing);
 	if (pins != PASSO_GCODE_OK)
 		return pins;
+	const enum passo_gcode_error backlash = check_backlash(grbl, timing);
+	if (backlash != PASSO_GCODE_OK)
+		return backlash;
 	apply_travel(grbl);
 	passo_gcode_configure(grbl->player->gcode,
 	    &(struct passo_gcode_settings){
@@ -325,6 +492,8 @@ enum passo_gcode_error passo_grbl_apply(struct passo_grbl *grbl)
 	if (error == PASSO_ERROR_RATIO)
 		return PASSO_GCODE_STATEMENT;
 #endif
+	if (error == PASSO_OK)
+		error = apply_backlash(grbl);
 	if (error == PASSO_OK)
 		error = passo_player_restart(grbl->player);
 	passo_grbl_override(grbl);

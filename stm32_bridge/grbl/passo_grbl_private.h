@@ -5,6 +5,9 @@
 #define PASSO_GRBL_PRIVATE_H
 
 #include "passo_grbl.h"
+#ifndef PASSO_WITHOUT_TRACKERS
+#include "passo_track.h"
+#endif
 
 void passo_grbl_say(struct passo_grbl *grbl, const char *text);
 void passo_grbl_say_number(struct passo_grbl *grbl, uint64_t number);
@@ -108,9 +111,16 @@ enum passo_error passo_grbl_drive(struct passo_grbl *grbl, bool on);
 /* Disables idle drives after the time in the settings. */
 void passo_grbl_mind_drives(struct passo_grbl *grbl);
 
-/* Applies the settings to path, interpreter, pins and inputs. At rest; the path restarts. Errors: TOO_FAST,
- * PULSE_TOO_SHORT, STATEMENT, NOT_IDLE (rejected by the core); the previous settings must then be applied
- * again. */
+#ifndef PASSO_WITHOUT_TRACKERS
+/* What the tracker of an axis, and of all its motors, takes up. */
+struct passo_track passo_grbl_track(const struct passo_grbl *grbl, uint8_t axis);
+/* The highest speed of that, steps/s, UQ32.32: a way of its backlash takes at most twice the time at it. */
+uint64_t passo_grbl_take_up_speed(const struct passo_track *track);
+#endif
+
+/* Applies the settings to path, interpreter, pins and inputs. At rest; the path restarts, and `stopping` is
+ * set while trackers take up another backlash. Errors: TOO_FAST, PULSE_TOO_SHORT, STATEMENT, NOT_IDLE
+ * (rejected by the core); the previous settings must then be applied again. */
 enum passo_gcode_error passo_grbl_apply(struct passo_grbl *grbl);
 /* Loads the stored settings, or the defaults. Error: STORAGE. */
 enum passo_gcode_error passo_grbl_load(struct passo_grbl *grbl);

@@ -50,6 +50,10 @@ static const struct kind AXIS_KINDS[PASSO_GRBL_AXIS_SETTINGS] = {
     [PASSO_GRBL_SPEED] = {110, false, true, 10000000},
     [PASSO_GRBL_ACCELERATION] = {120, false, true, 1000000},
     [PASSO_GRBL_TRAVEL] = {130, false, true, 100000},
+#ifndef PASSO_WITHOUT_TRACKERS
+    [PASSO_GRBL_BACKLASH] = {160, false, false, 1000},
+    [PASSO_GRBL_TAKE_UP] = {810, false, false, 1000000},
+#endif
 #ifndef PASSO_LINEAR_PATHS
     [PASSO_GRBL_JERK] = {800, false, false, 999999999},
 #endif

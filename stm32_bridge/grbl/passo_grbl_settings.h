@@ -49,6 +49,10 @@ enum passo_grbl_axis_setting {
 	PASSO_GRBL_SPEED,        /* $110: mm/min */
 	PASSO_GRBL_ACCELERATION, /* $120: mm/s^2 */
 	PASSO_GRBL_TRAVEL,       /* $130: mm */
+#ifndef PASSO_WITHOUT_TRACKERS
+	PASSO_GRBL_BACKLASH, /* $160: mm */
+	PASSO_GRBL_TAKE_UP,  /* $810: mm/s^2 by which it is taken up; 0: $120 */
+#endif
 #ifndef PASSO_LINEAR_PATHS
 	PASSO_GRBL_JERK, /* $800: mm/s^3; profile jerk if no axis has 0, else not */
 #endif

@@ -135,12 +135,24 @@ static bool clear(struct passo_grbl *grbl)
 	return passo_clear(passo) == PASSO_OK && passo_grbl_drive(grbl, true) == PASSO_OK;
 }
 
+/* Whether no tracker is on its way: then positions are exact. */
+static bool has_taken_up(struct passo *passo)
+{
+#ifdef PASSO_WITHOUT_TRACKERS
+	(void)passo;
+	return true;
+#else
+	return passo_track_again(passo) == PASSO_OK && !passo_is_moving(passo);
+#endif
+}
+
 bool passo_grbl_end_stop(struct passo_grbl *grbl)
 {
 	struct passo *passo = grbl->player->feed->passo;
 
 	passo_poll(passo);
-	if (passo_is_moving(passo) || !clear(grbl) || passo_player_restart(grbl->player) != PASSO_OK)
+	if (passo_is_moving(passo) || !clear(grbl) || !has_taken_up(passo)
+	    || passo_player_restart(grbl->player) != PASSO_OK)
 		return false;
 	if (grbl->held)
 		passo_resume(passo);

@@ -135,7 +135,7 @@ class MachineReader {
         ends.homing = home && (switches.includes("home") ? "home" : `limit_${home}`);
         if (home && !switches.includes(ends.homing)) wrong(`home = "${home}" needs "home" or "${ends.homing}" in switches`);
         const given = RULES.backlash.find(key => table.has(key));
-        if (given) wrong(`${given}: only passo run with G-code takes backlash up`);
+        if (given) wrong(`${given}: only passo run, make and console --grbl take backlash up`);
         return ends;
     }
 

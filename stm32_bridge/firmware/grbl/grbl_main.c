@@ -16,7 +16,7 @@
 #elif defined PASSO_WITHOUT_ROUNDING
 #define LOOK_AHEAD 40u
 #else
-#define LOOK_AHEAD 31u
+#define LOOK_AHEAD 30u
 #endif
 #define SLEWS_PER_SECOND 20u /* of hold and stop, from full speed */
 #define DRAIN_VELOCITY 65536u
