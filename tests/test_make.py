@@ -261,6 +261,7 @@ SMALL = [  # machines that other boards cannot be
         "axis 1: switches: the board icebreaker has one pin for home and",
     ),
     ("tangnano9k", 'switches = ["home"]', "inputs.limit_low: 4 are needed for 4 axes, the table has 3"),
+    ("tangnano20k", 'switches = ["home"]', "axes: 4 requested, but the table has pins for 3"),
 ]
 
 
@@ -270,11 +271,24 @@ def test_small_boards(
 ) -> None:
     """Pins that are shared, pins that are too few."""
     path = tmp_path / "small.toml"
-    more = ONE if name == "tangnano9k" else ""
+    more = ONE if name.startswith("tangnano") else ""
     large = f'chip = "STM32F103CB"\n{TEXT}'
     path.write_text(large.replace("hx8k", name).replace('switches = ["home"]', switches, 1) + more)
     assert main(["make", str(path), "--out", str(tmp_path / "out")]) == 2
     assert said in capsys.readouterr().err and not (tmp_path / "out").exists()
+
+
+def test_one_pin_for_two(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Outputs on the pins of a fifth axis."""
+    path = tmp_path / "five.toml"
+    text = (paths.examples / "machines" / "motors.toml").read_text().replace("tangnano9k", "icebreaker")
+    fifth = ONE.replace('"A"', '"B"')
+    path.write_text(text.replace("drive =", "spindle_maximum = 1000\ndrive =") + fifth)
+    assert main(["make", str(path), "--out", str(tmp_path / "out")]) == 2
+    told = capsys.readouterr().err
+    assert told.startswith(f"{path}: ") and told.count("\n") == 1
+    assert "outputs.outputs[0]: pin 45 is already used by axes[4].enable" in told
+    assert not (tmp_path / "out").exists()
 
 
 def test_one_pin_of_a_switch_is_on_the_sheet(tmp_path: Path) -> None:

@@ -26,12 +26,12 @@ def test_a_picture_shows_what_there_is(name: str) -> None:
 
 
 def test_each_board_has_one() -> None:
-    assert set(PICTURES) == {"idea.png", *(f"wiring-{name}.png" for name in boards())}
+    assert set(PICTURES) == {"idea.png", *(f"wiring-{board.folder}.png" for board in boards().values())}
 
 
 def test_the_wiring_has_every_pin() -> None:
-    for name, board in boards().items():
-        _, link, axes = PICTURES[f"wiring-{name}.png"]
+    for board in boards().values():
+        _, link, axes = PICTURES[f"wiring-{board.folder}.png"]
         assert {signal: pin for signal, _, pin, _ in link}.items() <= {
             signal: pin.pin for signal, pin in board.pins.items()
         }.items()
@@ -49,7 +49,7 @@ def test_comments_give_the_places_on_the_connectors() -> None:
     assert places("tangnano9k") == {}  # has the numbers of the pins printed
 
 
-@pytest.mark.parametrize("name", ["hx8k", "icebreaker", "colorlight"])
+@pytest.mark.parametrize("name", ["hx8k", "icebreaker", "colorlight", "colorlighti5", "ulx3s-25"])
 def test_every_pin_has_a_place_of_its_own(name: str) -> None:
     """But the LEDs and the oscillator; the same place means the same pin."""
     table, where = boards()[name], places(name)

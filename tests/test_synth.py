@@ -3,17 +3,17 @@
 
 import importlib.util
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from passo.toolchain import paths
-from passo_fpga import flow, pages, parts_report, report, synth, tools
-from passo_fpga.boards import boards
+from passo_fpga import boards_report, flow, pages, parts_report, report, synth, tools
+from passo_fpga.boards import Board, boards
 from passo_fpga.complaints import complaints, packer_complaints
 from passo_fpga.design import Design
-from passo_fpga.devices import DEVICES, GOWIN
+from passo_fpga.devices import DEVICES, GW1N, GW2A
 from passo_fpga.families.gowin import functions as gowin_functions
 from passo_fpga.families.gowin import held_pins
 from passo_fpga.flow import CROWDED, Placed, _sites, _too_large, count
@@ -30,16 +30,16 @@ def placed(**clocks: tuple[float, float]) -> Placed:
 
 def test_what_is_wrong_with_a_result_is_told() -> None:
     """Clocks missed or absent, a PLL with the wrong clock, complaints of nextpnr."""
-    assert synth._problems(placed(clk=(100.5, 100.0), spi_sclk=(80.0, 25.0)), 100) == ()
-    assert "clk: 99.9 MHz" in synth._problems(placed(clk=(99.9, 100.0), spi_sclk=(80.0, 25.0)), 100)[0]
-    assert "sclk: 24.0 MHz" in synth._problems(placed(clk=(100.5, 100.0), spi_sclk=(24.0, 25.0)), 100)[0]
-    assert synth._problems(placed(clk=(100.5, 100.0)), 100) == ("no clock from SCLK",)
-    assert "PLL" in synth._problems(placed(clk=(100.5, 50.0), spi_sclk=(80.0, 25.0)), 100)[0]
+    assert synth.problems_of(placed(clk=(100.5, 100.0), spi_sclk=(80.0, 25.0)), 100) == ()
+    assert "clk: 99.9 MHz" in synth.problems_of(placed(clk=(99.9, 100.0), spi_sclk=(80.0, 25.0)), 100)[0]
+    assert "sclk: 24.0 MHz" in synth.problems_of(placed(clk=(100.5, 100.0), spi_sclk=(24.0, 25.0)), 100)[0]
+    assert synth.problems_of(placed(clk=(100.5, 100.0)), 100) == ("no clock from SCLK",)
+    assert "PLL" in synth.problems_of(placed(clk=(100.5, 50.0), spi_sclk=(80.0, 25.0)), 100)[0]
     complained = replace(
         placed(clk=(100.5, 100.0), spi_sclk=(80.0, 25.0)), complaints=("one", "two", "three", "four")
     )
-    assert synth._problems(complained, 100) == ("one", "two", "three", "and 1 more of the kind")
-    assert synth._problems(replace(complained, fits=False), 100) == ("no place or no route",)
+    assert synth.problems_of(complained, 100) == ("one", "two", "three", "and 1 more of the kind")
+    assert synth.problems_of(replace(complained, fits=False), 100) == ("no place or no route",)
 
 
 # Output of the tools for boards; from the second on with an error in the pin file or the clock constraints.
@@ -55,9 +55,12 @@ COMPLAINTS = (
 NO_COMPLAINTS = """\
 Info: Cell O_psram_ck[0] not found
 Info: Cell IO_psram_dq[15] not found
+Info: Cell O_sdram_clk not found
+Info: Cell IO_sdram_dq[31] not found
 Info: Routing globals...
 Info:     'sclk' net was routed.
 Warning: Max frequency for clock  'clk': 117.51 MHz (FAIL at 120.08 MHz)
+Warning: Failed to route net 'core_low[1]' from X26Y0/F6 to X31Y20/B2 using dedicated routing.
 1 warning, 0 errors
 """
 
@@ -84,7 +87,7 @@ GOWIN_FUNCTIONS = {
 
 def test_pins_of_the_configuration_are_released() -> None:
     """All that the board uses; each is reported if its option is missing."""
-    (tang,) = [board for board in BOARDS if board.device.family is GOWIN]
+    (tang,) = [board for board in BOARDS if board.device.family is GW1N]
     pins = {port: pin.pin for port, pin in tang.ports().items()}
     assert held_pins(pins, GOWIN_FUNCTIONS, tang.pack) == ()
     told = held_pins(pins, GOWIN_FUNCTIONS, ())
@@ -100,8 +103,50 @@ def test_pins_of_the_configuration_are_released() -> None:
 @pytest.mark.skipif(importlib.util.find_spec("apycula") is None, reason="needs 'tools/setup.sh fpga'")
 def test_functions_of_pins_are_those_of_the_database() -> None:
     """Assumed by the test above."""
-    functions = gowin_functions()
+    functions = gowin_functions(DEVICES["gw1nr-9c"].part)
     assert {pin: functions[pin] for pin in GOWIN_FUNCTIONS} == GOWIN_FUNCTIONS
+
+
+@pytest.mark.skipif(importlib.util.find_spec("apycula") is None, reason="needs 'tools/setup.sh fpga'")
+@pytest.mark.parametrize("board", [each for each in BOARDS if each.device.family in (GW1N, GW2A)])
+def test_pins_of_a_gowin_board_exist_and_are_free(board: Board) -> None:
+    """By the database of its part, with inputs and outputs; without its packer options some are not."""
+    at = {port: pin.pin for port, pin in board.ports(3, ["inputs", "outputs"]).items()}
+    part = board.device.part
+    assert set(at.values()) <= gowin_functions(part).keys()
+    assert board.device.family.held_pins(part, at, board.pack) == ()
+    assert board.device.family.held_pins(part, at, ())
+
+
+def test_rows_of_boards_are_written_one_by_one(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Seeds without margin, and those that fit nowhere, do not count; the rows of other boards stay."""
+    page = tmp_path / "report.md"
+    page.write_text("before\n{}\n{}\nafter\n".format(*pages.BOARDS))
+    monkeypatch.setattr(boards_report, "PAGE", page)
+    reached = {"icebreaker": [37.0, 37.2, 0.0, 48.0], "tangnano20k": [200.0] * 4}
+    monkeypatch.setattr(boards_report, "SEEDS", range(1, 5))
+    monkeypatch.setattr(boards_report, "prepare", lambda programs, tell: None)
+
+    def seeds(chosen: boards_report.Router) -> Callable[[int], Placed]:
+        def run(seed: int) -> Placed:
+            mhz = reached[chosen.board.name][seed - 1]
+            clocks = {"clk": (mhz, chosen.mhz), "sclk": (30.0, 25.0)}
+            return Placed(mhz > 0, False, 4000 + seed, 1, clocks, tmp_path)
+
+        return run
+
+    monkeypatch.setattr(boards_report, "seeds", seeds)
+    assert report.main(["--boards", "--only", "icebreaker"]) == 0
+    assert report.main(["--boards", "--only", "tangnano20k"]) == 0
+    told = page.read_text()
+    assert told.startswith("before\n") and told.endswith("after\n") and told.count("\n| icebreaker |") == 1
+    first = (
+        "iCE40-UP5K | inputs, outputs | 4,004 of 5,280 LC (76%) | 0.0 | 37.1 | 36 MHz | 2 of 4 | 9 MHz | 18 M"
+    )
+    assert first in told and told.index("| icebreaker |") < told.index("| tangnano20k | GW2AR-18 |")
+    assert "| 200.0 | 200.0 | 81 MHz | 4 of 4 | 18 MHz | 40.5 M |" in told
+    assert "inputs" not in boards_report.row(boards_report.router(boards()["colorlight"]), [with_clk(50)])
+    assert report.main(["--boards", "--only", "nowhere"]) == 2
 
 
 def play_synth(

@@ -13,7 +13,8 @@ from passo.toolchain import paths
 
 from tests.helpers.whole_machine import WholeMachine, drive, run
 
-ROUTER = (paths.examples / "machines" / "router.toml").read_text()
+MACHINES = paths.examples / "machines"
+ROUTER = (MACHINES / "router.toml").read_text()
 PART = [
     "G21 G90 G17 G54",
     "M3 S8000",
@@ -53,9 +54,20 @@ WHOLE = "PASSO_WHOLE"
 @pytest.mark.skipif(WHOLE not in os.environ, reason="make whole-machine")
 def test_four_motors(tmp_path: Path) -> None:
     """The example and its whole part, by the image of the large chip: a quarter of an hour."""
-    machines = paths.examples / "machines"
-    lines = (machines / "motors.nc").read_text().splitlines()
-    assert len(run(WholeMachine(machines / "motors.toml", tmp_path / "made"), lines)) == 4
+    lines = (MACHINES / "motors.nc").read_text().splitlines()
+    assert len(run(WholeMachine(MACHINES / "motors.toml", tmp_path / "made"), lines)) == 4
+
+
+@pytest.mark.skipif(WHOLE not in os.environ, reason="make whole-machine")
+@pytest.mark.parametrize(("name", "axes"), [("laser", 2), ("router", 3)])
+def test_an_example_that_homes(tmp_path: Path, name: str, axes: int) -> None:
+    """With its whole part, on its board at its clock; only its travel is shorter, as is the way home."""
+    text = (MACHINES / f"{name}.toml").read_text()
+    path = tmp_path / f"{name}.toml"
+    path.write_text(re.sub(r"travel = \d+", "travel = 2", text).replace("[switches]", f"{HOME}[switches]"))
+    lines = (MACHINES / f"{name}.nc").read_text().splitlines()
+    seen = run(WholeMachine(path, tmp_path / "made"), lines)
+    assert len(seen) == axes and all(len(driven.seconds) > 100 and driven.turns > 2 for driven in seen)
 
 
 GOOD = {

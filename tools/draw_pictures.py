@@ -39,6 +39,8 @@ def pictures() -> Iterator[tuple[str, Any, Callable[[], Figure]]]:
     shown = play()
     yield "idea.png", shown.facts(), lambda: draw_idea(shown)
     for name, board in boards().items():
+        if name != board.folder:
+            continue
         facts = wiring(board)
         yield f"wiring-{name}.png", facts, lambda facts=facts: draw_wiring(facts)
 

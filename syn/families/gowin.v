@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// GW1NR-9C cells for the board top.
+// Gowin cells for the board top.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
 
 // clk = oscillator / (IDIV_SEL + 1) * (FBDIV_SEL + 1); VCO = clk * ODIV_SEL
 module passo_pll #(
-  parameter FCLKIN    = "27",  // MHz of the oscillator
+  parameter DEVICE    = "GW1NR-9C",
+  parameter FCLKIN    = "27",        // MHz of the oscillator
   parameter IDIV_SEL  = 0,
   parameter FBDIV_SEL = 0,
   parameter ODIV_SEL  = 8
@@ -18,7 +19,7 @@ module passo_pll #(
 
   rPLL #(
     .FCLKIN   (FCLKIN),
-    .DEVICE   ("GW1NR-9C"),
+    .DEVICE   (DEVICE),
     .IDIV_SEL (IDIV_SEL),
     .FBDIV_SEL(FBDIV_SEL),
     .ODIV_SEL (ODIV_SEL)

@@ -1,8 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""The boards: each is a folder in syn/ with a table board.toml; see docs/fpga.md."""
+"""The boards: each is a folder in syn/ with a table board.toml; see docs/fpga.md.
 
+A board with FPGAs of several sizes has one name more for each: `ulx3s-25`.
+"""
+
+import tomllib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 from passo.toolchain import paths
 from passo.values import meant
@@ -16,6 +21,7 @@ from passo_fpga.table import BoardError, Table, TableError
 FOLDER = paths.syn
 PLACEABLE = tuple(name for name, device in DEVICES.items() if device.family.place)
 TABLE = "board.toml"
+SIZES = "sizes"  # key of the FPGAs that it is sold with, besides that of `device`
 
 OSCILLATOR = "oscillator"
 NEEDED = ("spi_sclk", "spi_mosi", "spi_cs_n", "spi_miso", "sync")
@@ -41,6 +47,11 @@ class Board:
     reset: Mapping[str, tuple[int, ...]]
     parts: Mapping[str, core_parts.PartPins[Pin]]  # pins of each optional part of the core
     shared: bool  # the pin of a home switch may be that of a limit of its axis
+
+    @property
+    def folder(self) -> str:
+        """Name of its folder, which boards of several sizes share."""
+        return path_of(self.name).parent.name
 
     @property
     def axes(self) -> int:
@@ -124,8 +135,27 @@ class Board:
 
 
 def names() -> list[str]:
-    """Names of all boards."""
-    return [path.parent.name for path in sorted(FOLDER.glob(f"*/{TABLE}"))]
+    """Names of all boards, each followed by those of its sizes."""
+    return [
+        name
+        for path in sorted(FOLDER.glob(f"*/{TABLE}"))
+        for name in (path.parent.name, *(f"{path.parent.name}-{size}" for size in _sizes(path)))
+    ]
+
+
+def path_of(name: str) -> Path:
+    """The table of a board."""
+    path = FOLDER / name / TABLE
+    return path if path.exists() else FOLDER / name.rpartition("-")[0] / TABLE
+
+
+def _sizes(path: Path) -> list[str]:
+    """The sizes that a table lists; none if it is wrong, which board() reports."""
+    try:
+        found = tomllib.loads(path.read_text(encoding="utf-8")).get(SIZES)
+    except ValueError:
+        return []
+    return list(found) if isinstance(found, dict) else []
 
 
 def boards() -> dict[str, Board]:
@@ -138,9 +168,15 @@ def board(name: str) -> Board:
     if name not in names():
         hint = meant(name, tuple(names())) or f"; must be one of {', '.join(names())}"
         raise BoardError(f"unknown board '{name}'{hint}")
-    table = Table.read(name, FOLDER / name / TABLE)
+    path = path_of(name)
+    table = Table.read(name, path)
     title = table.text("title")
     device = _device(table, title)
+    sizes = table.table(SIZES, {})
+    others = {f"{path.parent.name}-{size}": _size(sizes.table(size), device) for size in _sizes(path)}
+    sizes.end()
+    device = others.get(name, device)
+    title = device.title if name in others else title
     family = device.family
     load, pack = table.text("load"), table.texts("pack", ())
 
@@ -197,6 +233,13 @@ def _device(table: Table, title: str) -> Device:
     return Device(
         table.board, title, like.family, synthesis, part, int(capacity), like.target_mhz, core=like.core
     )
+
+
+def _size(facts: Table, like: Device) -> Device:
+    """The FPGA of another size of a board: its title, its part and its capacity."""
+    title, part, capacity = facts.text("title"), facts.texts("part"), facts.number("capacity")
+    facts.end()
+    return replace(like, name=facts.board, title=title, part=part, capacity=int(capacity))
 
 
 def _pin(table: Table, key: str, family: Family, invertible: bool = False) -> Pin:

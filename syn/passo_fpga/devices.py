@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from passo_fpga.families.ecp5 import ECP5
 from passo_fpga.families.family import Family
-from passo_fpga.families.gowin import GOWIN
+from passo_fpga.families.gowin import GW1N, GW2A
 from passo_fpga.families.ice40 import ICE40
 from passo_fpga.families.xilinx7 import XILINX7
 
@@ -63,7 +63,7 @@ DEVICES = {
         Device(
             "gw1nr-9c",
             "GW1NR-9C C6/I5",
-            GOWIN,
+            GW1N,
             "synth_gowin",
             ("--device", "GW1NR-LV9QN88PC6/I5", "--vopt", "family=GW1N-9C"),
             capacity=8640,
@@ -71,6 +71,19 @@ DEVICES = {
             pins=(
                 *(52, 35, *range(25, 35), *range(36, 43), 48, 49, 51),
                 *(*range(53, 58), 63, *range(68, 78), *range(79, 87)),
+            ),
+        ),
+        Device(
+            "gw2ar-18",
+            "GW2AR-18 C8/I7",
+            GW2A,
+            "synth_gowin -family gw2a",
+            ("--device", "GW2AR-LV18QN88C8/I7", "--vopt", "family=GW2A-18C"),
+            capacity=20736,
+            target_mhz=120,
+            pins=(
+                *(80, 77, *range(25, 35), *range(36, 43), 48, 49, 51),
+                *(*range(53, 57), *range(69, 77), 79, *range(81, 87)),
             ),
         ),
         Device(

@@ -78,7 +78,8 @@ def _checksum(design: Design, pins: Path) -> int:
 def pll_file(board: Board, mhz: float | None = None, parts: Sequence[str] = ()) -> str:
     """Text of the PLL module with the dividers for this clock."""
     pll = board.pll(mhz, parts)
-    parameters = {**pll.parameters, **board.device.family.pll_kind(board.pll_kind)}
+    device = board.device
+    parameters = {**pll.parameters, **device.family.pll_kind(device.part, board.pll_kind)}
     return PLL.format(
         table=_table(board),
         made=pll.mhz,
@@ -96,4 +97,4 @@ def pin_file(board: Board, axes: int | None = None, parts: Sequence[str] = ()) -
 
 
 def _table(board: Board) -> str:
-    return f"{FOLDER.name}/{board.name}/{TABLE}"
+    return f"{FOLDER.name}/{board.folder}/{TABLE}"

@@ -16,6 +16,7 @@ PAGE = paths.reference / "report.md"
 TEMPLATE = Path(__file__).with_name("page.md")
 README = paths.root / "README.md"
 BEGIN, END = "<!-- report: make report writes from here -->", "<!-- to here -->"
+BOARDS = "<!-- boards: make report BOARDS=1 writes from here -->", "<!-- to here: boards -->"
 WIDTH = 118  # of the tables without a terminal
 NONE = "–"
 
@@ -27,6 +28,7 @@ def write(report: dict[str, Any]) -> None:
     template = TEMPLATE.read_text(encoding="utf-8")
     parts = {
         "goals": markdown(*_goals(report)),
+        "boards": block_of(PAGE, *BOARDS),
         "devices": "\n\n".join(_device(report, name) for name in DEVICES),
         "tops": markdown(*_tops(report)),
         "split": "\n\n".join(
@@ -69,6 +71,12 @@ def show(report: dict[str, Any]) -> None:
         for row in rows:
             shown.add_row(*row)
         screen.print(shown)
+
+
+def block_of(page: Path, begin: str = BEGIN, end: str = END) -> str:
+    """What a page has between the marks; nothing if it lacks them."""
+    text = page.read_text(encoding="utf-8") if page.exists() else ""
+    return text.partition(begin)[2].partition(end)[0].strip("\n")
 
 
 def write_block(page: Path, block: str, begin: str = BEGIN, end: str = END) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from passo.toolchain import paths
 
-from passo_fpga.boards import FOLDER, OF_AXIS, TABLE
+from passo_fpga.boards import OF_AXIS, path_of
 
 LINK = ("spi_cs_n", "spi_sclk", "spi_mosi", "spi_miso", "irq")
 _PLACE = re.compile(
@@ -31,7 +31,7 @@ def _bits(port: str, value: str) -> Sequence[str]:
 
 def places(board: str) -> dict[str, str]:
     """The place of each port bit that has one; without connectors the board shows the number of the pin."""
-    text = (FOLDER / board / TABLE).read_text(encoding="utf-8")
+    text = path_of(board).read_text(encoding="utf-8")
     found: dict[str, str] = {}
     for port, value, note in re.findall(r"^(\w+) = (\[[^]]*\]|[^#\n]*?) *# (.*)$", text, re.M):
         found |= zip(_bits(port, value), _places(note), strict=False)

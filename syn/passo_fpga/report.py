@@ -5,7 +5,8 @@ A full report writes build/report.json, docs/reference/report.md and the goals b
 README.md; QUICK=1 writes only the goals. A partial report (ONLY=, QUICK=1) is printed and written to
 build/report-part.json.
 Each run of a netlist with a seed is cached in build/fpga: an interrupted report resumes, and after a change
-only the affected runs are repeated. PARTS=1 measures the optional parts of the core instead.
+only the affected runs are repeated. PARTS=1 measures the optional parts of the core instead, BOARDS=1 a
+router on each board.
 """
 
 import argparse
@@ -22,11 +23,13 @@ from passo.console import Estimate, console, stages
 from passo.output import write_json
 from passo.toolchain import paths
 
-from passo_fpga import pages, parts_report
+from passo_fpga import boards_report, pages, parts_report
+from passo_fpga.boards import names
 from passo_fpga.design import Design
 from passo_fpga.devices import DEVICES, SPI_MHZ, Device
 from passo_fpga.flow import Placed, cells, place, synthesize
 from passo_fpga.split import difference, split
+from passo_fpga.table import BoardError
 from passo_fpga.tools import ToolError, prepare, versions, workers
 
 REPORT = paths.build / "report.json"
@@ -70,7 +73,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--only", default="", help=f"comma-separated devices: {','.join(DEVICES)}")
     parser.add_argument("--quick", action="store_true", help="only the rows of the goals")
     parser.add_argument("--parts", action="store_true", help="measure the optional blocks instead")
+    parser.add_argument("--boards", action="store_true", help="measure a router on each board instead")
     options = parser.parse_args(arguments)
+    if options.boards:
+        return _boards(options.only)
     chosen = [name for name in options.only.split(",") if name] or list(DEVICES)
     if unknown := set(chosen) - set(DEVICES):
         message = f"there is no device '{min(unknown)}'; choose of {', '.join(DEVICES)}"
@@ -108,6 +114,21 @@ def _parts(chosen: Sequence[str]) -> int:
     try:
         parts_report.report(chosen, set(chosen) == set(DEVICES))
     except ToolError as error:
+        print(error, file=sys.stderr)
+        return 1
+    return 0
+
+
+def _boards(only: str) -> int:
+    known = names()
+    chosen = [name for name in only.split(",") if name] or known
+    if unknown := set(chosen) - set(known):
+        message = f"there is no board '{min(unknown)}'; choose of {', '.join(known)}"
+        print(f"make report: {message}", file=sys.stderr)
+        return 2
+    try:
+        boards_report.report(chosen)
+    except (ToolError, BoardError) as error:
         print(error, file=sys.stderr)
         return 1
     return 0

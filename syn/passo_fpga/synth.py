@@ -99,7 +99,7 @@ class Bitstream:
     def clock(self) -> str:
         """What it reaches."""
         reached = f"{self.placed.main_clock[0]:.1f} MHz for a clock of {self.mhz:g} MHz"
-        return f"{reached}, margin {_margin(self.placed):.1%}"
+        return f"{reached}, margin {margin_of(self.placed):.1%}"
 
 
 def make(
@@ -130,13 +130,12 @@ def make(
     tell(f"{chosen.name}: synthesis")
     cells_made = cells(design)
     problems = synthesis_complaints(design)
-    problems += family.held_pins(
-        {port: pin.pin for port, pin in chosen.ports(axes, wanted).items()}, chosen.pack
-    )
+    at = {port: pin.pin for port, pin in chosen.ports(axes, wanted).items()}
+    problems += family.held_pins(chosen.device.part, at, chosen.pack)
     tried = {} if problems else _try_seeds(chosen, design, pins, pll.mhz, tell)
-    meet = {seed: placed for seed, placed in tried.items() if not _problems(placed, pll.mhz)}
-    good = next((seed for seed, placed in meet.items() if _margin(placed) >= MARGIN), None)
-    taken = good if good is not None else max(meet, key=lambda seed: _margin(meet[seed]), default=None)
+    meet = {seed: placed for seed, placed in tried.items() if not problems_of(placed, pll.mhz)}
+    good = next((seed for seed, placed in meet.items() if margin_of(placed) >= MARGIN), None)
+    taken = good if good is not None else max(meet, key=lambda seed: margin_of(meet[seed]), default=None)
     if taken is not None:
         tell("bitstream")
         problems = pack(design, tried[taken], chosen.pack, bitstream)
@@ -146,7 +145,7 @@ def make(
         print(f"  PROBLEM    {problem}")
     if not tried:
         return None
-    best = tried[taken] if taken is not None else max(tried.values(), key=_margin)
+    best = tried[taken] if taken is not None else max(tried.values(), key=margin_of)
     facts = chosen.device.capacity, family.size_unit, pll.mhz, taken or 0, int(design.parameters["BUILD"])
     made = Bitstream(bitstream, best, *facts)
     print(f"  build      {made.build}, as the core tells it")
@@ -177,12 +176,12 @@ def _try_seeds(
     def run(seed: int) -> Placed:
         tell(f"{chosen.name}: place and route, seed {seed}")
         placed = place(design, seed, mhz, ports, pins)
-        problems = _problems(placed, mhz)
+        problems = problems_of(placed, mhz)
         tell(f"{chosen.name}: seed {seed}: {'; '.join(problems) or f'{placed.main_clock[0]:.1f} MHz'}")
         return placed
 
     def is_last(placed: Placed) -> bool:
-        return placed.too_large or (not _problems(placed, mhz) and _margin(placed) >= MARGIN)
+        return placed.too_large or (not problems_of(placed, mhz) and margin_of(placed) >= MARGIN)
 
     step = workers()
     with ThreadPoolExecutor(step) as pool:
@@ -194,12 +193,12 @@ def _try_seeds(
     return tried
 
 
-def _margin(placed: Placed) -> float:
+def margin_of(placed: Placed) -> float:
     """By how much the worst clock exceeds what is required, as a ratio."""
     return min((achieved / wanted for achieved, wanted in placed.clocks.values()), default=0.0) - 1
 
 
-def _problems(placed: Placed, mhz: float) -> tuple[str, ...]:
+def problems_of(placed: Placed, mhz: float) -> tuple[str, ...]:
     """Why a result cannot be used: clocks missed, absent or wrong, or complaints of nextpnr."""
     if not placed.fits:
         return ("does not fit" if placed.too_large else "no place or no route",)

@@ -78,8 +78,10 @@ class Family:
         """Arguments of the packer."""
         return [*options, PLACED, made]
 
-    def held_pins(self, at: Mapping[str, str], options: Sequence[str]) -> tuple[str, ...]:
-        """What speaks against the ports at these pins."""
+    def held_pins(
+        self, part: Sequence[str], at: Mapping[str, str], options: Sequence[str]
+    ) -> tuple[str, ...]:
+        """What speaks against the ports at these pins of a part."""
         return ()
 
     def pin_line(self, port: str, pin: Pin) -> str:
@@ -90,6 +92,6 @@ class Family:
         """All settings of the PLL, those beyond the limits of the VCO as well."""
         raise NotImplementedError
 
-    def pll_kind(self, kind: str) -> dict[str, int | str]:
-        """Further parameters of passo_pll, for one of `plls`."""
+    def pll_kind(self, part: Sequence[str], kind: str) -> dict[str, int | str]:
+        """Further parameters of passo_pll, for a part and one of `plls`."""
         return {}

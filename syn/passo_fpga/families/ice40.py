@@ -27,7 +27,7 @@ class _Ice40(Family):
                     parameters = {"DIVR": divr, "DIVF": divf, "DIVQ": divq, "FILTER_RANGE": filter_range}
                     yield vco / (1 << divq), vco, parameters
 
-    def pll_kind(self, kind: str) -> dict[str, int | str]:
+    def pll_kind(self, part: Sequence[str], kind: str) -> dict[str, int | str]:
         return {"PAD": int(kind == "pad")}
 
 

@@ -1,0 +1,20 @@
+%
+(A slot around a corner, in two depths)
+G21 G90 G17
+M3 S12000
+M8
+G0 X0.2 Y0.2
+G1 Z-0.1 F600
+X0.9 F1800
+G3 X1.1 Y0.4 J0.2
+G1 Y0.9
+Z-0.2 F600
+Y0.4 F1800
+G2 X0.9 Y0.2 I-0.2
+G1 X0.2
+G0 Z0
+M9
+M5
+G0 X0 Y0
+M30
+%
