@@ -11,6 +11,7 @@
 module passo_axes #(
   parameter            AXES         = 4,
   parameter            INPUTS       = 0,
+  parameter            TRACKERS     = 0,
   parameter            BLOCK_RAM    = 1,  // for the timings
   parameter [AXES-1:0] STEP_RESET   = 0,
   parameter [AXES-1:0] DIR_RESET    = 0,
@@ -26,6 +27,10 @@ module passo_axes #(
   input  wire [     3:0] bus_address,      // within the block
   input  wire [    31:0] bus_data,
   output wire [    31:0] read_data,
+  // positions of trackers
+  input  wire            of_tracker,       // one is addressed
+  input  wire            tracker_takes,
+  input  wire [    15:0] tracker_half,
   output wire [    15:0] bus_half,         // one clock late the upper half of bus_data, then the lower one
   // lines
   input  wire [AXES-1:0] step_request,
@@ -176,7 +181,7 @@ module passo_axes #(
     .bus_write        (bus_write),
     .bus_read         (bus_read),
     .select_axis      (select_axis),
-    .select_position  (select_position),
+    .select_position  (select_position | (TRACKERS != 0 && of_tracker)),
     .bus_address      (bus_address[2:0]),
     .bus_data         (bus_data),
     .read_data        (lost_read),
@@ -194,8 +199,9 @@ module passo_axes #(
   );
 
   passo_positions #(
-    .AXES (AXES),
-    .LATCH(INPUTS)
+    .AXES    (AXES),
+    .LATCH   (INPUTS),
+    .TRACKERS(TRACKERS)
   ) u_positions (
     .clk           (clk),
     .rst           (rst),
@@ -205,6 +211,9 @@ module passo_axes #(
     .snapshot      (snapshot),
     .latch         (latch),
     .address       (bus_address),
+    .of_tracker    (of_tracker),
+    .tracker_takes (tracker_takes),
+    .tracker_half  (tracker_half),
     .position      (position)
   );
 

@@ -149,7 +149,10 @@ module passo_channel #(
   wire            tracking;
   wire [AXES-1:0] step_request;
   wire [AXES-1:0] directions;
-  wire [    31:0] trackers_read_data;
+  wire [    23:0] trackers_read_data;
+  wire            of_tracker;
+  wire            tracker_takes;
+  wire [    15:0] tracker_half;
   /* verilator lint_off UNUSEDSIGNAL */
   wire [    15:0] bus_half;
   /* verilator lint_on UNUSEDSIGNAL */
@@ -226,7 +229,7 @@ module passo_channel #(
   assign bad_value = inputs_bad_value | outputs_bad_value;
   assign refusal = line_refusal | ramp_refusal | raster_refusal;
   assign read_data = registers_read_data | axes_read_data | inputs_read_data | encoders_read_data | outputs_read_data
-                     | trackers_read_data;
+                     | {8'd0, trackers_read_data};
 
   reg  [2:0] occupied_q;  // a line loaded in the clock of a stop changes DIR up to 4 clocks later
   reg        at_rest;  // no motion, no step in flight to the axes, no change of the outputs that waits
@@ -434,6 +437,7 @@ module passo_channel #(
   passo_axes #(
     .AXES        (AXES),
     .INPUTS      (INPUTS),
+    .TRACKERS    (TRACKERS),
     .BLOCK_RAM   (STEPS_REGISTER == 0),
     .STEP_RESET  (STEP_RESET),
     .DIR_RESET   (DIR_RESET),
@@ -448,6 +452,9 @@ module passo_channel #(
     .bus_address    (bus_address[3:0]),
     .bus_data       (bus_data),
     .read_data      (axes_read_data),
+    .of_tracker     (of_tracker),
+    .tracker_takes  (tracker_takes),
+    .tracker_half   (tracker_half),
     .bus_half       (bus_half),
     .step_request   (step_request),
     .directions     (directions),
@@ -590,30 +597,36 @@ module passo_channel #(
       passo_trackers #(
         .AXES(AXES)
       ) u_trackers (
-        .clk         (clk),
-        .rst         (rst),
-        .bus_write   (bus_write),
-        .bus_read    (bus_read),
-        .select      (select),
-        .bus_address (bus_address),
-        .bus_bits    (bus_data[AXES-1:0]),
-        .bus_half    (bus_half),
-        .read_data   (trackers_read_data),
-        .halt        (drop | stopped),
-        .zero        (command_zero),
-        .brake       (stopping),
-        .hold        (hold | wait_known),
-        .busy        (tracking),
-        .path_steps  (path_steps),
-        .path_down   (path_directions),
-        .line_moves  (line_moves),
-        .path_runs   (moves_path && rate != 17'd0),
-        .waits       (waits),
-        .step_request(step_request),
-        .directions  (directions)
+        .clk          (clk),
+        .rst          (rst),
+        .bus_write    (bus_write),
+        .bus_read     (bus_read),
+        .select       (select),
+        .bus_address  (bus_address),
+        .bus_bits     (bus_data[AXES-1:0]),
+        .bus_half     (bus_half),
+        .read_data    (trackers_read_data),
+        .of_tracker   (of_tracker),
+        .tracker_takes(tracker_takes),
+        .tracker_half (tracker_half),
+        .halt         (drop | stopped),
+        .zero         (command_zero),
+        .brake        (stopping),
+        .hold         (hold | wait_known),
+        .busy         (tracking),
+        .path_steps   (path_steps),
+        .path_down    (path_directions),
+        .line_moves   (line_moves),
+        .path_runs    (moves_path && rate != 17'd0),
+        .waits        (waits),
+        .step_request (step_request),
+        .directions   (directions)
       );
     end else begin : g_no_trackers
-      assign trackers_read_data = 32'd0;
+      assign trackers_read_data = 24'd0;
+      assign of_tracker         = 1'b0;
+      assign tracker_takes      = 1'b0;
+      assign tracker_half       = 16'd0;
       assign tracking           = 1'b0;
       assign step_request       = path_steps;
       assign directions         = path_directions;

@@ -209,6 +209,9 @@ module passo_encoders #(
     .snapshot      (snapshot),
     .latch         (latch),
     .address       ({1'b0, bus_address[2:0]}),
+    .of_tracker    (1'b0),
+    .tracker_takes (1'b0),
+    .tracker_half  (16'd0),
     .position      (position)
   );
 

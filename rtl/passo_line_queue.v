@@ -177,6 +177,10 @@ module passo_line_queue #(
     .read_data    ({last, endless, last_substep})
   );
 
+  // Data stand in the clock before the strobe, too.
+  reg some_steps;
+  always @(posedge clk) some_steps <= bus_data[29:0] != 30'd0;
+
   genvar axis;
   generate
     if (OUTPUTS != 0) begin : g_output
@@ -198,7 +202,7 @@ module passo_line_queue #(
     end
     for (axis = 0; axis < AXES; axis = axis + 1) begin : g_axis
       /* verilator lint_off UNUSEDSIGNAL */
-      wire [31:0] written = {bus_data[29:0] != 30'd0, write_directions[axis], bus_data[29:0]};
+      wire [31:0] written = {some_steps, write_directions[axis], bus_data[29:0]};
       /* verilator lint_on UNUSEDSIGNAL */
       wire [31:0] read;
       passo_memory #(

@@ -9,7 +9,7 @@
 // Promise: `snapshot` makes one round also copy the positions, as they were in its slot 63: they are coherent. It is
 // the next round, or the one after it if the positions are being zeroed, which takes a round; the copies are complete
 // 194 clocks after `snapshot`, or 258 if `latch` came before it. `position` is the copy of axis `address` once
-// `address` has been stable for 13 clocks.
+// `address` has been stable for 13 clocks; of a tracker (`of_tracker`) it is what that shifts in.
 //
 // `latch` captures all counters simultaneously. The next round, or the one after it if positions are being zeroed,
 // takes them instead of the current ones and copies the positions as they were on the clock of `latch`, complete 130
@@ -22,8 +22,9 @@
 `default_nettype none
 
 module passo_positions #(
-  parameter AXES  = 4,
-  parameter LATCH = 0   // 1: positions can be latched
+  parameter AXES     = 4,
+  parameter LATCH    = 0,  // 1: positions can be latched
+  parameter TRACKERS = 0   // 1: positions of trackers are shown too
 ) (
   input  wire            clk,
   input  wire            rst,
@@ -33,6 +34,10 @@ module passo_positions #(
   input  wire            snapshot,
   input  wire            latch,           // positions of this clock are kept
   input  wire [     3:0] address,         // of an axis; 8 and more: of its latched position
+  // ignored without TRACKERS
+  input  wire            of_tracker,      // show what a tracker has
+  input  wire            tracker_takes,   // strobe: the lower half of it, and in the next clock the upper one
+  input  wire [    15:0] tracker_half,
   output reg  [    31:0] position
 );
 
@@ -82,7 +87,7 @@ module passo_positions #(
   endgenerate
 
   // One half of a position: read in phase 0, examined in phase 2, computed in phase 3, written in the next phase 0,
-  // copied in phase 1. Bytes 0 and 1 are swapped in memory. Phases 2 and 3 read for `position`.
+  // copied in phase 1. Bytes 0 and 1 are swapped in memory. Phases 2 and 3 read the halves for `position`.
   wire [15:0] half;
   reg  [15:0] half_q;
   reg  [15:0] half_next;
@@ -92,12 +97,13 @@ module passo_positions #(
   reg         down;
   reg  [ 3:0] place;  // address of half_next
   wire [ 7:0] low_byte = captured[0];
+  wire        shows_tracker = TRACKERS != 0 && of_tracker;
   wire [15:0] sum = half_q + {16{down}} + {15'd0, up};
 
   // Positions, copies, and latched ones
   /* verilator lint_off UNUSEDSIGNAL */
   wire [5:0] write_address = {phase[0] & latches, phase[0] & ~latches, place};
-  wire [5:0] read_address = phase[1] ? {address[3], ~address[3], address[2:0], upper} : {2'b00, slot[5:2]};
+  wire [5:0] read_address = phase[1] ? {address[3], ~address[3], address[2:0], phase[0]} : {2'b00, slot[5:2]};
   /* verilator lint_on UNUSEDSIGNAL */
 
   passo_memory #(
@@ -140,10 +146,8 @@ module passo_positions #(
       up   <= 1'b0;
       down <= 1'b0;
     end
-    if (phase == 2'd0) begin
-      if (place[0]) position[31:16] <= half;
-      else position[15:0] <= {half[7:0], half[15:8]};
-    end
+    if (shows_tracker ? tracker_takes : phase == 2'd1)
+      position <= shows_tracker ? {tracker_half, position[31:16]} : {half, half_q[7:0], half_q[15:8]};
 
     if (round_ends) begin
       clears <= clear_waits;

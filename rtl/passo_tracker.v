@@ -21,7 +21,8 @@
 //
 // All numbers are in a memory of 16-bit words that is read twice a clock and written once: two words are added, or
 // subtracted, with a carry from word to word. Positions are Q32.32, t is UQ32.32, the others are UQ0.32 steps. What
-// the host writes stands in a memory of its own and is copied once a turn, but for the turn in which it is written.
+// the host writes stands in a memory of its own and is copied: the target in each turn, speed and acceleration in
+// every other one; but not in a turn in which it is written while it is read.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -35,51 +36,53 @@ module passo_tracker #(
   input  wire            bus_write,
   input  wire            bus_read,
   input  wire            select,
-  input  wire [     7:0] bus_address,  // within the channel
-  input  wire [AXES-1:0] bus_bits,     // lower bits of the data
-  input  wire [    15:0] bus_half,     // one clock late the upper half of the data, then the lower one
-  output wire [    31:0] read_data,
+  input  wire [     7:0] bus_address,    // within the channel
+  input  wire [AXES-1:0] bus_bits,       // lower bits of the data
+  input  wire [    15:0] bus_half,       // one clock late the upper half of the data, then the lower one
+  output wire [    23:0] read_data,
+  output reg             of_tracker,     // a position is addressed
+  output wire            tracker_takes,  // strobe: show its lower half, and in the next clock its upper half
+  output wire [    15:0] tracker_half,
   // motion
-  input  wire            halt,         // hard stop, or stopped
-  input  wire            zero,         // strobe: only at rest
-  input  wire            brake,        // a soft stop is in progress
-  input  wire            hold,         // no motion may begin
+  input  wire            halt,           // hard stop, or stopped
+  input  wire            zero,           // strobe: only at rest
+  input  wire            brake,          // a soft stop is in progress
+  input  wire            hold,           // no motion may begin
   // axes
-  input  wire [AXES-1:0] path_down,    // the last line that moved the axis went down
-  output reg  [AXES-1:0] step_made,    // strobes: a step is due
-  output reg             step_down,    // its direction: 1 = negative
-  output reg  [AXES-1:0] moves         // the tracker moves, or is about to
+  input  wire [AXES-1:0] path_down,      // the last line that moved the axis went down
+  output reg  [AXES-1:0] step_made,      // strobes: a step is due
+  output reg             made,           // one of them is
+  output wire            step_down,      // its direction: 1 = negative
+  output reg  [AXES-1:0] moves           // the tracker moves, or is about to
 );
 
   `include "passo_registers.vh"
 
   localparam AXIS_BITS = AXES > 4 ? 3 : 2;
 
-  // Numbers of an axis, by pairs of words. Of 64 bits are y, t and the position; of the target the lower pair is 0.
-  localparam [3:0] VELOCITY = 4'd0;  // of one tick at 0, of the next one at 1
-  localparam [3:0] FASTER = 4'd2;  // w
-  localparam [3:0] SLOWER = 4'd3;
-  localparam [3:0] SPEED = 4'd4;
-  localparam [3:0] TARGET = 4'd5;
-  localparam [3:0] SCRATCH = 4'd6;  // y
-  localparam [3:0] ACCELERATION = 4'd8;
+  // Numbers of an axis, by pairs of words. Of 64 bits are d, z, t and the position; the lower pair of the target is 0.
+  localparam [2:0] LIMIT = 3'd2;  // at 2 the speed, at 10 the acceleration
+  localparam [2:0] VELOCITY = 3'd3;  // at 3 of even ticks, at 11 of odd ones; before the new one its place has w
+  localparam [3:0] DISTANCE = 4'd4;  // d
+  localparam [3:0] NOWHERE = 4'd6;
+  localparam [3:0] TARGET = 4'd7;
+  localparam [3:0] LEFT = 4'd8;  // z
   localparam [3:0] STOPPING = 4'd12;  // t
   localparam [3:0] POSITION = 4'd14;
 
   // ---- the program: two slots for each line, one word a slot ----
   //
-  //   0  w = v + a             4  y = target - position   8  y - w * sign            12  new t
-  //   1  v - a                 5                          9                          13
-  //   2  speed - v             6  y -= t * sign          10  reads for the host      14  new position
-  //   3  speed - w             7                         11  new v, of v, w, v - a   15
+  //   0  w = v + a        4  d                       8  z - w                  12  t + w, t - v or t
+  //   1  copies target    5                          9                         13
+  //   2  speed - v        6  z = d - t              10  copies speed or a      14  position + new v or d, * sign
+  //   3  speed - w        7                         11  new v: w, v, or v - a  15
   //
-  // y is d * sign, less 1 if sign is negative, so that its sign bit, as one of d, is right after additions, too.
   // A slot reads its words; one clock later they are what is added, two clocks later, so one line, the sum is written:
-  // it can be read three slots later.
+  // it can be read three slots later. In line 10 the second word is that of a position for the host.
 
   reg  [          4:0] slot;
   reg  [AXIS_BITS-1:0] axis;
-  reg                  odd;  // tick: which word is the new velocity
+  reg                  odd;  // tick
   wire [          3:0] line = slot[4:1];
   wire                 word = slot[0];  // the upper one of the pair
   wire                 turn_ends = slot == 5'd31;
@@ -105,148 +108,140 @@ module passo_tracker #(
   wire lands = stays_zero & ~(brakes | behind) & (rests ? close : near);
 
   // ---- clearing: v and t after a hard stop, all numbers after a reset or `zero`; for what is left of a tick and one ----
-  reg  [1:0] clears;
-  reg        clears_position;
-  wire       clearing = clears != 2'd0;
-  reg        cleared;  // in this turn
-  reg        cleared_position;
+  reg clearing;
+  reg clears_again;  // in the next tick
+  reg clears_position;
+  reg cleared;  // in this turn, which then rests
+  reg cleared_position;
 
   // ---- addresses ----
-  wire [3:0] old_velocity = {VELOCITY[3:1], odd};
-  wire [3:0] new_velocity = {VELOCITY[3:1], ~odd};
-  reg  [3:0] first;
-  reg  [3:0] second;
-  reg        subtracts;
-  reg        is_zero;  // write 0
-  reg        is_first;  // the lowest word
-  reg        no_first;  // take 0
-  reg        no_second;
+  wire [3:0] from = {
+    ~negative, POSITION[2:1], line[0]
+  };  // d: TARGET differs from the upper pair in this bit alone
+  reg [3:0] first;
+  reg [3:0] second;
+  reg subtracts;
+  reg is_first;  // the lowest word
+  reg no_first;  // take 0
+  reg no_second;
 
   always @* begin
-    first     = {SCRATCH[3:1], line[0]};
-    second    = 4'bx;
-    subtracts = ~negative;
-    is_zero   = 1'b0;
+    first     = line;
+    second    = {odd, VELOCITY};
+    subtracts = 1'b1;
     is_first  = ~word & ~line[0];
     no_first  = 1'b0;
     no_second = 1'b0;
     case (line)
       4'd0: begin
-        first     = old_velocity;
-        second    = ACCELERATION;
+        first     = {odd, VELOCITY};
+        second    = {1'b1, LIMIT};
         subtracts = 1'b0;
       end
       4'd1: begin
-        first     = old_velocity;
-        second    = ACCELERATION;
-        subtracts = 1'b1;
+        first     = TARGET;
+        subtracts = 1'b0;
         is_first  = ~word;
+        no_second = 1'b1;
       end
-      4'd2: begin
-        first     = SPEED;
-        second    = old_velocity;
-        subtracts = 1'b1;
-      end
+      4'd2: first = {1'b0, LIMIT};
       4'd3: begin
-        first     = SPEED;
-        second    = FASTER;
-        subtracts = 1'b1;
-        is_first  = ~word;
+        first    = {1'b0, LIMIT};
+        second   = {~odd, VELOCITY};
+        is_first = ~word;
       end
       4'd4, 4'd5: begin
-        first     = TARGET;
-        second    = {POSITION[3:1], line[0]};
-        subtracts = 1'b1;
-        no_first  = ~line[0];
+        first     = {~from[3], from[2:0]};
+        second    = from;
+        no_first  = ~line[0] & ~negative;
+        no_second = ~line[0] & negative;
       end
-      4'd6, 4'd7: second = {STOPPING[3:1], line[0]};
+      4'd6, 4'd7: begin
+        first  = {DISTANCE[3:1], line[0]};
+        second = {STOPPING[3:1], line[0]};
+      end
       4'd8, 4'd9: begin
-        second    = FASTER;
+        second    = {~odd, VELOCITY};
         no_second = line[0];
       end
       4'd10: begin
-        first  = 4'bx;
-        second = {POSITION[3:1], 1'b1};
-      end
-      4'd11: begin
-        first     = speeds ? FASTER : keeps ? old_velocity : SLOWER;
+        first     = {odd, LIMIT};
+        second    = {POSITION[3:1], 1'b1};
         subtracts = 1'b0;
-        is_first  = ~word;
-        is_zero   = cleared;
         no_second = 1'b1;
       end
+      4'd11: begin
+        first     = {odd ^ speeds, VELOCITY};
+        second    = {1'b1, LIMIT};
+        is_first  = ~word;
+        no_first  = cleared;
+        no_second = speeds | keeps;
+      end
       4'd12, 4'd13: begin
-        first     = {STOPPING[3:1], line[0]};
-        second    = speeds ? FASTER : old_velocity;
+        second    = {odd ^ speeds, VELOCITY};
         subtracts = ~speeds;
-        is_zero   = cleared;
+        no_first  = cleared;
         no_second = line[0] | keeps;
       end
       default: begin
-        first     = lands ? TARGET : {POSITION[3:1], line[0]};
-        second    = new_velocity;
+        second    = lands ? {DISTANCE[3:1], line[0]} : {~odd, VELOCITY};
         subtracts = negative;
-        is_zero   = cleared_position;
-        no_first  = lands & ~line[0];
-        no_second = lands | line[0];
+        no_first  = cleared_position;
+        no_second = line[0] & ~lands;
       end
     endcase
   end
 
   // ---- settings of the host: target up, target down, speed, acceleration, upper halves at odd places ----
-  // The upper half is written and copied first: a copy is whole, unless it begins with the write. They are copied where
-  // sums are not written: the target is read in slots 5 and 6, speed in 17 and 18, acceleration in 19 and 20, each word
-  // written one clock later.
+  // The upper half is written and copied first: a copy is whole, unless it begins with the write. Then what was copied
+  // before takes its place.
   wire [ 2:0] number = bus_address[2:0];
   reg         in_targets;  // decoded one clock ahead of the strobe
   reg         in_axis;
   reg         writes_upper;
   reg         writes_lower;
   reg  [ 4:0] host_place;
-  reg         keeps_setting;  // the host has written since the upper half was read
-  wire        copies = line == 4'd3 || line == 4'd9 || line == 4'd10;
-  wire        copies_last = slot[2] | (slot[1] & slot[0]);
+  wire        copies = line == 4'd1 || line == 4'd10;
+  reg         copies_q;  // and the host has not written
   wire [15:0] setting_word;
 
   // ---- address of the sum: of one line before ----
-  reg [3:0] result;
-  reg       writes;
+  reg  [3:0] result;
+  wire       copied = line == 4'd2 || line == 4'd11;
 
   always @* begin
-    result = {SCRATCH[3:1], ~line[0]};
-    writes = 1'b1;
     case (line)
-      4'd1:         result = FASTER;
-      4'd2:         result = SLOWER;
-      4'd3:         result = TARGET;
-      4'd9:         result = SPEED;
-      4'd10:        result = ACCELERATION;
-      4'd12:        result = new_velocity;
-      4'd13, 4'd14: result = {STOPPING[3:1], ~line[0]};
-      4'd15, 4'd0:  result = {POSITION[3:1], ~line[0]};
-      4'd4, 4'd11:  {result, writes} = 5'bxxxx_0;
-      default:      ;
+      4'd1:    result = {~odd, VELOCITY};
+      4'd2:    result = TARGET;
+      4'd5:    result = DISTANCE;
+      4'd6:    result = DISTANCE + 4'd1;
+      4'd7:    result = LEFT;
+      4'd8:    result = LEFT + 4'd1;
+      4'd11:   result = {odd, LIMIT};
+      4'd12:   result = speeds ? NOWHERE : {~odd, VELOCITY};
+      4'd13:   result = STOPPING;
+      4'd14:   result = STOPPING + 4'd1;
+      4'd15:   result = POSITION;
+      4'd0:    result = POSITION + 4'd1;
+      default: result = NOWHERE;
     endcase
-    if (copies) writes = ~(word ? keeps_setting : writes_lower);
   end
 
   // ---- memory ----
   wire [15:0] first_word;
   wire [15:0] second_word;
-  reg subtracts_q;
-  reg borrows_q;  // carry into the lowest word
-  reg begins_q;  // lowest word
-  reg no_first_q;
-  reg no_second_q;
-  reg [15:0] first_term;
-  reg [15:0] second_term;
-  reg carry;
+  reg         subtracts_q;
+  reg         begins_q;  // lowest word
+  reg         no_first_q;
+  reg         no_second_q;
+  reg  [15:0] first_term;
+  reg  [15:0] second_term;
+  reg         carry;
   wire [16:0] sum = {1'b0, first_term} + {1'b0, second_term} + {16'd0, carry};
-  wire [2:0] axis_padded = {{(3 - AXIS_BITS) {1'b0}}, axis};
-  wire [7:0] place = {
-    {(3 - AXIS_BITS) {1'b0}}, written, result, word ^ copies
-  };  // upper halves are copied first
-  wire host_reads = line == 4'd10;
+  wire [ 2:0] axis_padded = {{(3 - AXIS_BITS) {1'b0}}, axis};
+  wire [ 7:0] place = {{(3 - AXIS_BITS) {1'b0}}, written, result, word ^ copied};
+  wire [ 2:0] number_padded = {{(3 - AXIS_BITS) {1'b0}}, number[AXIS_BITS-1:0]};
+  wire        host_reads = line == 4'd10;
 
   passo_memory #(
     .WIDTH        (16),
@@ -257,7 +252,7 @@ module passo_tracker #(
     .write        ((writes_upper & ~rst) | writes_lower),
     .write_address({host_place, writes_upper}),
     .write_data   (bus_half),
-    .read_address ({axis_padded, slot[4], slot[4] ? copies_last : target_down, slot[0]}),
+    .read_address ({axis_padded, line[3], line[3] ? odd : target_down, ~word}),
     .load         (1'b1),
     .read_data    (setting_word)
   );
@@ -268,10 +263,10 @@ module passo_tracker #(
     .DATA_REGISTER(0)
   ) u_first (
     .clk          (clk),
-    .write        (writes & ~rst),
+    .write        (1'b1),
     .write_address(place),
-    .write_data   (copies ? setting_word : sum[15:0]),
-    .read_address ({axis_padded, first, word}),
+    .write_data   (sum[15:0]),
+    .read_address ({axis_padded, first, word ^ copies}),
     .load         (1'b1),
     .read_data    (first_word)
   );
@@ -282,37 +277,33 @@ module passo_tracker #(
     .DATA_REGISTER(0)
   ) u_second (
     .clk          (clk),
-    .write        (writes & ~rst),
+    .write        (1'b1),
     .write_address(place),
-    .write_data   (copies ? setting_word : sum[15:0]),
-    .read_address ({host_reads ? number : axis_padded, second, word}),
+    .write_data   (sum[15:0]),
+    .read_address ({host_reads ? number_padded : axis_padded, second, word}),
     .load         (1'b1),
     .read_data    (second_word)
   );
 
   // ---- what is found in the sums ----
-  // Whether the sums since the lowest word are all 0, or in line 4 all `negative`: three bits at a time, put together
-  // one clock later.
-  wire           sign = negative & (line == 4'd5 || line == 4'd6);
-  wire    [17:0] differs = {2'd0, sum[15:0] ^ {16{sign}}};
-  reg     [ 5:0] same;
-  reg            all_same;
-  reg            parity;  // of the number of steps: the position, rounded to the nearest step
-  integer        k;
+  // Whether the sums since the lowest word are all 0: four bits at a time, put together one clock later.
+  reg [3:0] same;
+  reg all_same;
+  reg crosses;  // the upper bit of the position below 1 changes: a step is due where that or bit 0 does
+  integer k;
 
   always @(posedge clk) begin
-    slot          <= slot + 5'd1;
-    subtracts_q   <= subtracts & ~is_zero;
-    borrows_q     <= (line == 4'd4 ? ~negative : subtracts) & ~is_zero;
-    begins_q      <= is_first;
-    no_first_q    <= no_first | is_zero;
-    no_second_q   <= no_second | is_zero;
-    first_term    <= first_word & ~{16{no_first_q}};
-    second_term   <= (second_word & ~{16{no_second_q}}) ^ {16{subtracts_q}};
-    carry         <= begins_q ? borrows_q : sum[16];
-    writes_lower  <= writes_upper & ~rst;
-    keeps_setting <= writes_lower;
-    writes_upper  <= bus_write & (in_targets | in_axis) & ~rst;
+    slot         <= slot + 5'd1;
+    subtracts_q  <= subtracts;
+    begins_q     <= is_first;
+    no_first_q   <= no_first;
+    no_second_q  <= no_second;
+    copies_q     <= copies & ~(word ? writes_lower : writes_upper);
+    first_term   <= (copies_q ? setting_word : first_word) & ~{16{no_first_q}};
+    second_term  <= (second_word & ~{16{no_second_q}}) ^ {16{subtracts_q}};
+    carry        <= begins_q ? subtracts_q : sum[16];
+    writes_lower <= writes_upper & ~rst;
+    writes_upper <= bus_write & (in_targets | in_axis) & ~rst;
     if (bus_write)
       host_place <= in_axis ? {bus_address[5:3], 1'b1, number[0]} : {number, 1'b0, bus_address[3]};
     if (turn_ends) axis <= axis + 1'b1;
@@ -323,13 +314,11 @@ module passo_tracker #(
     if (line == 4'd1) wide <= sum[16];
     if (line == 4'd3) slow <= sum[16];
     if (line == 4'd4) slower <= sum[16] & ~wide;
-    if (line == 4'd6) behind <= sum[15] ^ negative;
-    if (line == 4'd8) near <= sum[15] ^ negative;
-    if (line == 4'd10) close <= sum[15] ^ negative;
-    if (line == 4'd5) parity <= second_term[15];
-    if (slot == 5'd12) parity <= parity ^ second_term[0];
-    if (slot == 5'd31) parity <= parity ^ sum[15];
-    for (k = 0; k < 6; k = k + 1) same[k] <= differs[k*3+:3] == 3'd0;
+    if (line == 4'd6) behind <= sum[15];
+    if (line == 4'd8) near <= sum[15];
+    if (line == 4'd10) close <= sum[15];
+    crosses <= first_term[15] ^ sum[15];
+    for (k = 0; k < 4; k = k + 1) same[k] <= sum[k*4+:4] == 4'd0;
     all_same <= &same & (all_same | (slot[0] & ~slot[2]));  // begins in slots 11 and 25
     if (slot == 5'd15) there <= all_same & ~cleared_position;
     if (slot == 5'd27) stays_zero <= all_same;
@@ -359,6 +348,7 @@ module passo_tracker #(
     this_turns   = 1'b0;
     this_down    = 1'b0;
     for (i = 0; i < AXES; i = i + 1) begin
+      step_made[i] = made & written == i[AXIS_BITS-1:0];
       if (axis == i[AXIS_BITS-1:0]) begin
         this_enabled = enabled[i];
         this_sign    = signs[i];
@@ -368,77 +358,76 @@ module passo_tracker #(
     end
   end
 
+  assign step_down = negative;  // still of the turn that is over
+
   wire    turn_over = slot == 5'd0;  // the sum of the lowest whole step of the position
   reg     write_enable;
   reg     read_state;
-  reg     read_position;
   integer j;
 
   always @(posedge clk) begin
     // settings of a turn: those of the one before are needed until it is over
     if (slot == 5'd1) begin
       negative         <= this_sign;
-      rests            <= ~this_turns;
+      rests            <= ~this_turns | clearing;
       target_down      <= this_down;
       brakes           <= ~this_enabled | brake | clearing | (hold & ~this_turns);
       cleared          <= clearing;
       cleared_position <= clears_position;
     end
-    step_made <= {AXES{1'b0}};
+    made <= turn_over & (crosses ^ second_term[0] ^ carry) & ~(clearing | cleared);
     for (j = 0; j < AXES; j = j + 1) begin
       if (turn_over && written == j[AXIS_BITS-1:0]) begin
-        step_made[j] <= (parity ^ sum[0]) & ~(clearing | cleared);
         signs[j]     <= negative ^ (rests & behind & ~brakes);
         turns[j]     <= ~stays_zero;
         at_target[j] <= there;
       end
     end
-    if (turn_over) step_down <= negative;
     moves <= turns | (enabled & ~at_target & {AXES{~brake}});
 
     if (write_enable) enabled <= bus_bits;
-    if (tick_ends && clearing) clears <= clears - 2'd1;
-    if (tick_ends && clears == 2'd1) clears_position <= 1'b0;
+    if (tick_ends) begin
+      clearing        <= clears_again;
+      clears_again    <= 1'b0;
+      clears_position <= clears_position & clears_again;
+    end
     if (halt || zero || rst) begin
-      enabled <= {AXES{1'b0}};
-      clears  <= 2'd2;
+      enabled      <= {AXES{1'b0}};
+      clearing     <= 1'b1;
+      clears_again <= 1'b1;
     end
     if (zero || rst) clears_position <= 1'b1;
     if (rst) begin
       signs     <= {AXES{1'b0}};
       turns     <= {AXES{1'b0}};
       at_target <= {AXES{1'b0}};
-      step_made <= {AXES{1'b0}};
+      made      <= 1'b0;
       moves     <= {AXES{1'b0}};
     end
   end
 
   // ---- host: registers ----
-  reg [31:0] position;
-  reg        takes_upper;
-  reg        in_state;
-  reg        in_positions;
+  reg  takes_upper;
+  reg  in_state;
+  // It is addressed for longer than a turn before it is read. Not torn: a read takes what was there before.
+  wire takes_lower = slot == 5'd21 && !bus_read;
+
+  assign tracker_takes = takes_lower | takes_upper;
+  assign tracker_half  = second_word;
 
   always @(posedge clk) begin
-    in_targets <= select && bus_address[7:4] == CHANNEL_TRACKER_TARGET_BASE[7:4] && {1'b0, number} < AXES[3:0];
-    in_axis    <= select && bus_address[7:6] == CHANNEL_AXIS_BASE[7:6] && bus_address[2:1] == AXIS_TRACKER_SPEED[2:1]
-                  && {1'b0, bus_address[5:3]} < AXES[3:0];
+    in_targets <= select && bus_address[7:4] == CHANNEL_TRACKER_TARGET_BASE[7:4];
+    in_axis    <= select && bus_address[7:6] == CHANNEL_AXIS_BASE[7:6] && bus_address[2:1] == AXIS_TRACKER_SPEED[2:1];
     in_state <= select && bus_address[7:1] == CHANNEL_TRACKER_ENABLE[7:1];
-    in_positions <= select && bus_address[7:3] == CHANNEL_TRACKER_POSITION_BASE[7:3];
+    of_tracker <= select && bus_address[7:3] == CHANNEL_TRACKER_POSITION_BASE[7:3]
+                   && {1'b0, number} < AXES[3:0];
     write_enable <= bus_write && in_state && !number[0];
     read_state <= bus_read && in_state && number[0];
-    read_position <= bus_read && in_positions;
-
-    // It is addressed for longer than a turn before it is read. Not torn: a read takes what was there before.
-    takes_upper <= slot == 5'd21 && !bus_read;
-    if (slot == 5'd21 && !bus_read) position[15:0] <= second_word;
-    if (takes_upper) position[31:16] <= second_word;
+    takes_upper <= takes_lower;
 
     if (rst) begin
-      write_enable  <= 1'b0;
-      read_state    <= 1'b0;
-      read_position <= 1'b0;
-      position      <= 32'd0;
+      write_enable <= 1'b0;
+      read_state   <= 1'b0;
     end
   end
 
@@ -446,8 +435,7 @@ module passo_tracker #(
   wire [7:0] moves_padded = {{(8 - AXES) {1'b0}}, moves};
   wire [7:0] at_target_padded = {{(8 - AXES) {1'b0}}, at_target};
 
-  assign read_data = (read_state ? {8'd0, at_target_padded, moves_padded, enabled_padded} : 32'd0)
-                     | (read_position ? position : 32'd0);
+  assign read_data = read_state ? {at_target_padded, moves_padded, enabled_padded} : 24'd0;
 
 endmodule
 `resetall

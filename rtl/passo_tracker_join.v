@@ -35,45 +35,38 @@ module passo_tracker_join (
   output reg  went_down      // direction of the last line that moved the axis
 );
 
-  reg signed [2:0] owed;  // steps of the tracker that wait, signed
-  reg              some;  // owed is not 0
-  reg              turned;  // the axis went against the path last
-  reg              ready;  // a step may join, decided one clock ago
+  reg [1:0] size;  // of what is owed: steps of the tracker that wait
+  reg       down;  // its sign; of 0 any
+  reg       turned;  // the axis went against the path last
+  reg       ready;  // a step may join, decided one clock ago
 
-  wire several = owed[2] ? owed[1:0] != 2'd3 : owed[1];  // two or more
-  wire many = owed == 3'sd3 || owed == -3'sd3;
-  wire against = some & (owed[2] ^ path_down);
+  wire some = size != 2'd0;
+  wire several = size[1];
+  wire many = size == 2'd3;
+  wire against = some & (down ^ path_down);
   wire leaves = path_step ? against : ready;  // it cancels a step of the path, or joins
   wire may_join = (~waits & ~path_step) | many;
-  wire turns = path_step ? turned & against : ready ? against : turned & ~(path_moves & ~some);
+  wire keeps = turned & ~(path_moves & ~some);
+  wire turns = path_step ? keeps & against : ready ? against : keeps;
 
   assign step_request = path_step ? ~against : ready;
   assign direction    = path_down ^ turns;
   assign owes         = some;
 
-  wire       [1:0] events = {leaves, made};
-  reg signed [2:0] change;
-
-  always @* begin
-    case (events)
-      2'b00:   change = 3'sd0;
-      2'b01:   change = made_down ? -3'sd1 : 3'sd1;
-      2'b10:   change = owed[2] ? 3'sd1 : -3'sd1;
-      default: change = made_down == owed[2] ? 3'sd0 : made_down ? -3'sd2 : 3'sd2;
-    endcase
-  end
-
-  wire signed [2:0] owed_next = owed + change;
+  // the size changes by +1, 0, -1 or -2
+  wire changes = leaves ^ made;  // by one
+  wire less = made ? down ^ made_down : leaves;
 
   always @(posedge clk) begin
-    ready  <= some & may_join & (~against | ~path_moves | several) & ~(leaves | made | halt | rst);
-    turned <= turns;
-    owed   <= owed_next;
-    some   <= owed_next != 3'sd0;
+    ready   <= some & may_join & (~against | ~path_moves | several) & ~(leaves | made);
+    turned  <= turns;
+    size[0] <= size[0] ^ changes;
+    size[1] <= changes ? (less ? many : some) : several & ~less;
+    if (made && !several) down <= made_down;
     if (path_moves) went_down <= path_down;
     if (halt || rst) begin
-      owed <= 3'sd0;
-      some <= 1'b0;
+      size  <= 2'd0;
+      ready <= 1'b0;
     end
     if (rst) begin
       went_down <= 1'b0;

@@ -38,7 +38,7 @@ struct passo_tracker_join {
 struct passo_tracker_turn {
 	bool negative, target_down, brakes, rests, cleared, cleared_position;
 	bool slow, slower, behind, near, close, there;
-	uint32_t acceleration;
+	uint32_t acceleration, reduction; /* of the speed: up, down */
 };
 
 struct passo_trackers {
@@ -46,6 +46,7 @@ struct passo_trackers {
 	struct passo_tracker_axis axis[PASSO_AXES_MAX];
 	struct passo_tracker_join join[PASSO_AXES_MAX];
 	uint8_t slot, turn; /* clock of a turn, and whose it is */
+	bool odd;           /* tick */
 	uint8_t clears;     /* ticks that end before v and t are used again */
 	bool clears_position;
 	bool step_down;

@@ -11,10 +11,9 @@
 enum {
 	SLOT_OVER = 0, /* of the turn before */
 	SLOT_SETTINGS = 1,
-	SLOT_TARGET = 5,
+	SLOT_TARGET = 2,
 	SLOT_COMPARED = 16, /* all that is compared has been read */
-	SLOT_SPEED = 17,
-	SLOT_ACCELERATION = 19,
+	SLOT_LIMIT = 20,
 	SLOT_SHOWN = 21,
 	SLOT_LAST = 31
 };
@@ -98,7 +97,7 @@ static void compare(struct passo_tracker_turn *now, const struct passo_tracker_a
 	const uint64_t target = (uint64_t)axis->target << 32;
 	uint64_t y = target - axis->position - (negative ? 1u : 0u);
 
-	now->acceleration = axis->acceleration;
+	now->acceleration = now->reduction = axis->acceleration;
 	now->slow = axis->speed >= axis->velocity;
 	now->slower = now->slow && axis->speed - axis->velocity >= axis->acceleration;
 	now->there = target == axis->position && !now->cleared_position;
@@ -121,10 +120,9 @@ static void move(struct passo_trackers *trackers, struct passo_tracker_axis *axi
 	const struct passo_tracker_turn *now = &trackers->now;
 	const bool speeds = !now->brakes && !now->close && now->slower;
 	const bool keeps = !speeds && (now->rests || (!now->brakes && !now->near && now->slow));
-	const uint32_t change = keeps ? 0u : now->acceleration;
 	const uint32_t old = axis->velocity;
 	const bool was_odd = nearest_is_odd(axis->position);
-	uint32_t velocity = speeds ? old + change : old - change;
+	uint32_t velocity = speeds ? old + now->acceleration : keeps ? old : old - now->reduction;
 
 	if (now->cleared)
 		velocity = 0;
@@ -151,6 +149,13 @@ static void move(struct passo_trackers *trackers, struct passo_tracker_axis *axi
 	trackers->now = (struct passo_tracker_turn){0};
 }
 
+/* The lower half of the one before has been read when the speed is reduced; it is only written at rest. */
+static void copy_acceleration(struct passo_trackers *trackers, struct passo_tracker_axis *axis)
+{
+	axis->acceleration = axis->host.acceleration;
+	trackers->now.reduction = (axis->acceleration & 0xFFFF0000u) | (trackers->now.reduction & 0xFFFFu);
+}
+
 /* A clock of the turn of an axis; `written`: the host writes a setting in this clock. */
 static void clock_turn(
     struct passo_trackers *trackers, unsigned i, bool written, const struct passo_tracker_wires *wires)
@@ -168,13 +173,13 @@ static void clock_turn(
 	case SLOT_COMPARED:
 		compare(&trackers->now, axis);
 		break;
-	case SLOT_ACCELERATION:
-		if (!written)
-			axis->acceleration = axis->host.acceleration;
-		break;
-	case SLOT_SPEED:
-		if (!written)
+	case SLOT_LIMIT:
+		if (written)
+			break;
+		if (!trackers->odd)
 			axis->speed = axis->host.speed;
+		else
+			copy_acceleration(trackers, axis);
 		break;
 	default:
 		break;
@@ -234,6 +239,7 @@ void passo_tracker_clock(struct passo_channel *channel, const struct passo_bus *
 	trackers->slot = (uint8_t)((trackers->slot + 1u) % PASSO_TRACKER_TURN);
 	if (turn_ends)
 		trackers->turn = (uint8_t)((turn + 1u) % turns_of(channel));
+	trackers->odd = trackers->odd != tick_ends;
 }
 
 uint32_t passo_trackers_value(const struct passo_channel *channel, uint8_t address)
@@ -312,6 +318,7 @@ void passo_trackers_skip(struct passo_channel *channel, uint64_t clocks)
 
 	trackers->slot = (uint8_t)((now + clocks) % PASSO_TRACKER_TURN);
 	trackers->turn = (uint8_t)((now + clocks) % tick / PASSO_TRACKER_TURN);
+	trackers->odd = trackers->odd != ((now + clocks) / tick % 2u != 0u);
 	trackers->now = (struct passo_tracker_turn){0};
 	const unsigned axis = turn_in_progress(channel);
 	if (axis >= channel->axes)
