@@ -209,7 +209,7 @@ def test_a_motor_is_homed_by_its_tracker(axis: int, begin: int, pull_off: int, p
 
 
 def test_what_a_tracker_cannot_home() -> None:
-    """A switch that is not there, a tracker of another axis or of none."""
+    """A switch that is not fitted, a tracker of another axis or of none."""
     rig = Machine(model_engine(PARAMETERS, CLOCK_HZ), [Switch("home", 0, -700)])
     driver = driver_of(rig)
     own = track()
