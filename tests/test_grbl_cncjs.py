@@ -70,7 +70,7 @@ def stream(sender: Cncjs) -> None:
 def test_a_job_with_a_pause(sender: Cncjs) -> None:
     """By counting characters; each line is answered once, and cncjs sees the end by itself."""
     settings = sender.last["controller:settings"][1]
-    assert settings["settings"]["$110"] == "12000.000" and len(settings["settings"]) == 43
+    assert settings["settings"]["$110"] == "12000.000" and len(settings["settings"]) == 49
     assert "$110=12000.000 (X-axis maximum rate, mm/min)" in sender.lines
     assert sender.parser["modal"]["units"] == "G21" and sender.parser["modal"]["wcs"] == "G54"
     stream(sender)
