@@ -92,12 +92,27 @@ def test_corners_are_the_ends_of_the_parameters(name: str) -> None:
     assert taken == [low, high]
 
 
+@pytest.mark.parametrize(
+    ("parameters", "taken"),
+    [
+        ({"AXES": 3, "TRACKERS": 1, "TRACKED": 2}, True),
+        ({"AXES": 3, "TRACKERS": 1, "TRACKED": 3}, False),
+        ({"AXES": 3, "TRACKERS": 1, "TRACKED": -1}, False),
+        ({"AXES": 3, "TRACKERS": 0, "TRACKED": 1}, False),
+    ],
+)
+def test_axes_without_lines(parameters: dict[str, int], taken: bool) -> None:
+    """An axis with lines at least, and trackers."""
+    assert (not lint_rtl.read_with_slang(paths.rtl, lint_rtl.TOPS[0], parameters)) == taken
+
+
 @pytest.mark.parametrize("top", ["passo_core", *lint_rtl.TOPS])
 def test_every_number_of_the_core_has_its_corners(top: str) -> None:
     """A parameter that is added to the core is added to its tops and here."""
     head = (paths.rtl / f"{top}.v").read_text().partition(") (")[0]
     assert set(re.findall(r"^ *parameter .*?(\w+) *=", head, re.M)) == {
         *lint_rtl.ENDS,
+        *lint_rtl.DEPENDENT,
         *lint_rtl.LEVELS,
         *lint_rtl.TOLD,
     }

@@ -42,6 +42,12 @@ ENDS = {
     "OUTPUTS": (0, 1),
     "TRACKERS": (0, 1),
 }
+# Those whose ends depend on others.
+DEPENDENT: dict[str, list[Parameters]] = {
+    "TRACKED": [
+        {"AXES": axes, "TRACKERS": 1, "TRACKED": tracked} for axes, tracked in ((8, 7), (8, 1), (4, 3))
+    ]
+}
 LEVELS = ("STEP_RESET", "DIR_RESET", "ENABLE_RESET")  # a bit for each axis, default 0
 TOLD = ("CLOCK_HZ", "BUILD")  # a word, default 0
 AXES = 4  # the default
@@ -55,10 +61,8 @@ def _high(axes: int) -> Parameters:
 LOWEST: Parameters = {name: low for name, (low, _) in ENDS.items()}
 HIGHEST: Parameters = {name: high for name, (_, high) in ENDS.items()} | _high(8 * 8)
 FAR_APART: list[Parameters] = [{}, LOWEST, HIGHEST]
-TRACKED: list[Parameters] = [
-    {"AXES": axes, "TRACKERS": 1, "TRACKED": tracked} for axes, tracked in ((8, 7), (8, 1), (AXES, 3))
-]
-CORNERS = [*FAR_APART, *({name: end} for name, ends in ENDS.items() for end in ends), _high(AXES), *TRACKED]
+CORNERS = [*FAR_APART, *({name: end} for name, ends in ENDS.items() for end in ends), _high(AXES)]
+CORNERS += [corner for corners in DEPENDENT.values() for corner in corners]
 
 
 def read_with_verilator(rtl: Path, top: str, parameters: Parameters) -> str:
