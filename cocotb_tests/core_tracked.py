@@ -16,7 +16,7 @@ from cocotb_tests.helpers.core_frames import ack, request
 def lines_have_no_word_for_them(core: Core) -> None:
     """A line is control word, substeps, the steps of the axes with lines, output word."""
     channel = core.channel()
-    lined = core.axes - core.parameters.tracked
+    lined = core.parameters.lined
     assert 0 < lined < core.axes
     push = channel.base + r.CHANNEL_LINE
     words = [1, 9, *(9 for _ in range(lined)), 0]
@@ -45,7 +45,7 @@ def only_trackers_move_them(core: Core) -> None:
     """Beside a path each makes its own steps, which the path neither delays nor turns."""
     timing = PinTiming(high=6, low=6, setup=9, hold=5)
     trackers, random = begin(core, timing), rng("only_trackers_move_them")
-    channel, lined = trackers.channel, core.axes - core.parameters.tracked
+    channel, lined = trackers.channel, core.parameters.lined
     for axis in range(core.axes):
         trackers.limit(axis, STEP // 2, STEP // 50)
     trackers.go(*(0 for _ in range(core.axes)))
@@ -79,7 +79,7 @@ def what_it_does_alone_it_does_beside_a_path(core: Core) -> None:
     """The clocks between its steps are the same with a path and without one."""
     trackers = begin(core, PinTiming(high=4, low=4))
     channel, axis = trackers.channel, core.axes - 1
-    lined = core.axes - core.parameters.tracked
+    lined = core.parameters.lined
     trackers.limit(axis, STEP // 3, STEP // 50)
     zeros = [0] * (core.axes - 1)
     gaps = []

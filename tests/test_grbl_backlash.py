@@ -22,6 +22,7 @@ from passo.run import open_engine
 
 from tests.helpers.grbl_console import GrblConsole
 from tests.helpers.random_plans import SEED
+from tests.test_grbl_home import AXIS
 
 PLAY = 8  # steps of backlash of X, Y and Z
 SCALE = 80  # steps per mm
@@ -30,17 +31,6 @@ MIDDLE = TRAVEL * SCALE // 2  # steps, where axes are at first
 SLOW = 16  # mm/s^2: a take-up of 0.1 mm takes 0.16 s
 FAST = 20_000
 HEAD = "clock_hz = 4_000_000\nprobe = true\n[home]\nseek = 40\nspeed = 10\n"
-AXIS = """
-[[axis]]
-name = "{name}"
-steps_per_mm = 80
-speed = 100
-acceleration = 1000
-travel = 20
-home = "{home}"
-switches = {switches}
-{backlash}
-"""
 BACKLASH = "backlash = 0.1\ntake_up = {take_up}\n"
 BOUND = re.compile(r"\[MSG:With backlash \$(\d+) is at (?:most|least) ([\d.]+)\]\nerror:12")
 PATIENCE = 60  # simulated seconds
@@ -57,8 +47,7 @@ def machine_of(
         ("Z", "high", '["home"]'),
     )
     path.write_text(
-        head
-        + "".join(AXIS.format(name=n, home=h, switches=switches or s, backlash=backlash) for n, h, s in axes)
+        head + "".join(AXIS.format(name=n, home=h, switches=switches or s) + backlash for n, h, s in axes)
     )
     return read_machine(path, takes_up=True)
 

@@ -51,6 +51,11 @@ class Parameters(CoreParameters):
     """Build parameters of a core; ranges as in spec/pins.toml."""
 
     @property
+    def lined(self) -> int:
+        """Axes of a channel that lines move: the first ones."""
+        return self.axes - self.tracked
+
+    @property
     def name(self) -> str:
         """Unique name of these parameters, for file names."""
         queues = f"{self.line_queue_log2}_{self.ramp_queue_log2}"

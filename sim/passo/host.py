@@ -81,7 +81,7 @@ class Channel:
 
     def push_lines(self, lines: Sequence[Any], outputs: Sequence[r.LineOutputWord] = ()) -> None:
         """Queue lines (`struct passo_line`), with OUTPUTS each with its output; there must be room."""
-        axes = self.parameters.axes - self.parameters.tracked
+        axes = self.parameters.lined
         self.push_line_words([frame.line_words(line, axes) for line in lines], outputs)
 
     def push_line_words(

@@ -4,22 +4,9 @@
 `default_nettype none
 
 module passo_core #(
-  parameter CHANNELS        = 1,
-            AXES            = 4,
-            TICK_LOG2       = 7,
-            LINE_QUEUE_LOG2 = 8,
-            RAMP_QUEUE_LOG2 = 4,
-            STEPS_REGISTER  = 0,
-  parameter INPUTS          = 0,
-            ENCODERS        = 0,
-            OUTPUTS         = 0,
-            TRACKERS        = 0,
-            TRACKED         = 0,
-            STEP_RESET      = 0,
-            DIR_RESET       = 0,
-            ENABLE_RESET    = 0,
-  parameter CLOCK_HZ        = 0,
-            BUILD           = 0
+  parameter CHANNELS = 1, AXES = 4, TICK_LOG2 = 7, LINE_QUEUE_LOG2 = 8, RAMP_QUEUE_LOG2 = 4, STEPS_REGISTER = 0,
+  parameter INPUTS = 0, ENCODERS = 0, OUTPUTS = 0, TRACKERS = 0, TRACKED = 0,
+  parameter STEP_RESET = 0, DIR_RESET = 0, ENABLE_RESET = 0, CLOCK_HZ = 0, BUILD = 0
 ) (
   input  wire        clk,
   input  wire        rst,

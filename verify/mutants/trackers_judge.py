@@ -346,7 +346,7 @@ class Trackers(Host):
 
     def of_lines(self, steps: Sequence[int]) -> tuple[int, ...]:
         """The steps of a line, of which an axis without lines has none."""
-        lined = self.axes - self.parameters.tracked
+        lined = self.parameters.lined
         return (*steps[:lined], *(0 for _ in steps[lined:]))
 
     def directions(self, lines: Sequence[Line]) -> None:
