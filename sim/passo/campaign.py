@@ -80,27 +80,32 @@ def carry_out(campaign: Campaign, client: Any, tell: Callable[[Result], None] = 
     waiting = campaign.batches(workers)
     name = uuid.uuid4().hex  # two campaigns on a cluster do not share results
 
-    def submit(first: int, count: int) -> Any:
-        key = f"passo-{name}-{first}-{count}"
+    def submit(first: int, count: int, alone: bool = False) -> Any:
+        key = f"passo-{name}-{first}-{count}{'-alone' if alone else ''}"
         wanted = (campaign.seed, first, count, campaign.engine, campaign.player)
         future = client.submit(play_batch, *wanted, key=key)
-        places[key] = first, count
+        places[key] = first, count, alone
         return future
 
-    places: dict[str, tuple[int, int]] = {}
+    places: dict[str, tuple[int, int, bool]] = {}
+    suspects: list[int] = []  # they were on a process that died, perhaps because of a neighbor
     running = {submit(*one) for one in islice(waiting, IN_FLIGHT * workers)}
     try:
-        while running:
+        while running or suspects:
+            if not running:
+                running = {submit(suspects.pop(), 1, alone=True)}
             for future in _finished(running, client, lambda: tell(result)):
                 running.discard(future)
-                first, count = places.pop(future.key)
+                first, count, alone = places.pop(future.key)
                 try:
                     result.add(future.result())
                 except (CancelledError, OSError) as error:
                     raise Failure(f"lost the connection to the cluster: {error}") from None
                 except KilledWorker:
                     # A case that ends its process is a failure; the others of its batch are not.
-                    if count == 1:
+                    if count == 1 and not alone:
+                        suspects.append(first)
+                    elif alone:
                         text = "the process that played it died, again and again"
                         result.add(Batch(first, 1, Counter(moves=1), faults={first: Fault("crash", text)}))
                     else:
