@@ -58,6 +58,21 @@ def test_advance_agrees_with_every_clock(number: int) -> None:
     TrackerSession(BUILDS[number % len(BUILDS)], rng).play(25)
 
 
+def test_what_waits_for_a_tracker_is_skipped() -> None:
+    """Of a tracker that moves all but five clocks a tick, and of a stopped channel everything."""
+    session = TrackerSession(BUILDS[2], random.Random(SEED))
+    base, first = session.channels[0].base, session.channels[0].axis_base(0)
+    session.link.write(first + r.AXIS_TRACKER_SPEED, 1 << 24, 1 << 20)
+    session.link.write(base + r.CHANNEL_TRACKER_TARGET_BASE, 1000)
+    session.link.write(base + r.CHANNEL_TRACKER_ENABLE, 1)
+    for command, least in (0, 94_000), (r.ChannelCommandWord(abort=True).pack(), 99_900):
+        session.link.write(base + r.CHANNEL_COMMAND, command)
+        session.pair.run(2 * TICK)
+        skipped = session.pair.skipped
+        session.pair.run(100_000)
+        assert session.pair.skipped - skipped > least
+
+
 def counts(steps: np.ndarray, signs: np.ndarray, ticks: int) -> np.ndarray:
     """The position at the end of each tick, from the clocks and directions of the steps."""
     made = np.zeros(ticks + 1, np.int64)

@@ -87,14 +87,16 @@ bool passo_advance_link_rests(const struct passo_core *core, const struct passo_
 uint64_t passo_advance_link(
     struct passo_core *core, const struct passo_inputs *inputs, struct passo_shift *shift, uint64_t limit)
 {
-	const uint16_t address = core->link.bus.address;
+	const struct passo_bus before = core->link.bus;
 	struct passo_link_wires wires = {.incomplete = passo_core_any_incomplete(core),
 	    .busy = passo_core_any_busy(core),
 	    .status = passo_registers_status(core)};
 	struct passo_inputs pins = *inputs;
 	uint64_t clocks = 0;
 
-	while (clocks < limit && core->link.bus.address == address && passo_advance_link_is_alone(core)) {
+	/* the trackers note a frame that is being executed */
+	while (clocks < limit && core->link.bus.address == before.address
+	       && core->link.bus.commit == before.commit && passo_advance_link_is_alone(core)) {
 		const uint64_t skipped =
 		    passo_advance_least(quiet(core, &pins, shift, wires.status), limit - clocks);
 

@@ -165,10 +165,10 @@ uint64_t passo_advance_surroundings_quiet(
 	    || !outputs_settled(channel, inputs->bus) || !commands_settled(channel) || line->load_start
 	    || line->load_start_q || line->underrun
 	    || !ramps_settled(&channel->ramp_queue, inputs->parameters)
-	    || !lines_settled(channel, inputs->parameters) || !passo_encoders_quiet(channel, inputs)
-	    || !passo_trackers_quiet(channel, inputs))
+	    || !lines_settled(channel, inputs->parameters) || !passo_encoders_quiet(channel, inputs))
 		return 0;
-	const uint64_t clocks = passo_advance_least(
+	uint64_t clocks = passo_advance_least(
 	    passo_inputs_quiet(channel, inputs), passo_positions_quiet(&channel->positions));
+	clocks = passo_advance_least(clocks, passo_trackers_quiet(channel, inputs));
 	return passo_advance_least(clocks, timescale_quiet(channel, moving, clocks_to_slew));
 }

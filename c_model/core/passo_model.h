@@ -608,8 +608,8 @@ void passo_trackers_clock(
     struct passo_channel *channel, const struct passo_bus *bus, const struct passo_channel_wires *wires);
 /* Value of a register that is sampled in the clock of the response; 0 for others. */
 uint32_t passo_trackers_value(const struct passo_channel *channel, uint8_t address);
-/* Whether nothing changes but whose turn it is, and skipping such clocks. */
-bool passo_trackers_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs);
+/* Clocks in which nothing changes but whose turn it is, and skipping such clocks. */
+uint64_t passo_trackers_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs);
 void passo_trackers_skip(struct passo_channel *channel, uint64_t clocks);
 
 void passo_motion_wires(const struct passo_channel *channel, const struct passo_channel_inputs *inputs,

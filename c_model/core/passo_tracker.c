@@ -5,6 +5,7 @@
  */
 #include <stddef.h>
 
+#include "passo_advance.h"
 #include "passo_model.h"
 #include "passo_words.h"
 
@@ -75,12 +76,13 @@ static uint32_t *written_word(struct passo_trackers *trackers, unsigned axes, ui
 	}
 }
 
-static void begin_turn(struct passo_trackers *trackers, unsigned i, bool brake, bool hold)
+static struct passo_tracker_turn begin_turn(
+    const struct passo_trackers *trackers, unsigned i, bool brake, bool hold)
 {
 	const struct passo_tracker_axis *axis = &trackers->axis[i];
 	const bool rests = axis->velocity == 0u;
 
-	trackers->now = (struct passo_tracker_turn){
+	return (struct passo_tracker_turn){
 	    .negative = axis->negative,
 	    .rests = rests,
 	    .target_down = trackers->join[i].went_down,
@@ -164,7 +166,7 @@ static void clock_turn(
 
 	switch (trackers->slot) {
 	case SLOT_SETTINGS:
-		begin_turn(trackers, i, wires->brake, wires->hold);
+		trackers->now = begin_turn(trackers, i, wires->brake, wires->hold);
 		break;
 	case SLOT_TARGET:
 		if (!written)
@@ -201,6 +203,12 @@ static void clock_clearing(
 	trackers->clears_position = trackers->clears_position || wires->zero;
 }
 
+/* As others see it, one clock late. */
+static bool moves(const struct passo_tracker_axis *axis, bool brake)
+{
+	return axis->velocity != 0u || (axis->enabled && !axis->at_target && !brake);
+}
+
 void passo_tracker_clock(struct passo_channel *channel, const struct passo_bus *bus, bool selected,
     const struct passo_tracker_wires *wires)
 {
@@ -216,7 +224,7 @@ void passo_tracker_clock(struct passo_channel *channel, const struct passo_bus *
 	for (unsigned i = 0; i < channel->axes; i++) {
 		struct passo_tracker_axis *axis = &trackers->axis[i];
 
-		axis->moves = axis->velocity != 0u || (axis->enabled && !axis->at_target && !wires->brake);
+		axis->moves = moves(axis, wires->brake);
 		axis->step_made = false;
 		if (shows)
 			axis->shown = (uint32_t)(axis->position >> 32);
@@ -258,15 +266,17 @@ uint32_t passo_trackers_value(const struct passo_channel *channel, uint8_t addre
 	return passo_pack_channel_tracker_state(&state);
 }
 
-/* Of one axis: whether each turn leaves it as it is. */
-static bool axis_rests(const struct passo_tracker_axis *axis, const struct passo_tracker_join *join)
+/* Whether each turn leaves an axis as it is. */
+static bool axis_rests(const struct passo_trackers *trackers, unsigned i)
 {
-	const bool there = axis->position == (uint64_t)axis->target << 32;
+	const struct passo_tracker_axis *axis = &trackers->axis[i];
+	const bool there = axis->position == (uint64_t)axis->target << 32 && !trackers->clears_position;
 
-	return axis->velocity == 0u && !axis->step_made && !axis->moves && join->owed == 0 && !join->ready
-	    && axis->target == axis->host.target[join->went_down ? 1 : 0] && axis->speed == axis->host.speed
-	    && axis->acceleration == axis->host.acceleration && axis->at_target == there
-	    && (there || !axis->enabled) && axis->shown == (uint32_t)(axis->position >> 32);
+	return axis->velocity == 0u && (trackers->clears == 0u || axis->stopping == 0u)
+	    && (!trackers->clears_position || axis->position == 0u)
+	    && axis->target == axis->host.target[trackers->join[i].went_down ? 1 : 0]
+	    && axis->speed == axis->host.speed && axis->acceleration == axis->host.acceleration
+	    && axis->at_target == there && (there || !axis->enabled);
 }
 
 /* The axis whose settings have been read; `axes` or more: none. */
@@ -279,35 +289,85 @@ static unsigned turn_in_progress(const struct passo_channel *channel)
 	return trackers->slot == SLOT_OVER ? turn_before(channel) : trackers->turn;
 }
 
-bool passo_trackers_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs)
+/* Whether the turn in progress began as it would now. */
+static bool began_so(const struct passo_trackers *trackers, unsigned i)
+{
+	const struct passo_tracker_turn *now = &trackers->now;
+	const struct passo_tracker_turn other = begin_turn(trackers, i, false, trackers->hold);
+
+	return now->brakes == other.brakes && now->target_down == other.target_down
+	    && now->cleared == other.cleared && now->cleared_position == other.cleared_position;
+}
+
+/* Clocks before a slot of any turn. */
+static uint64_t clocks_to_slot(const struct passo_trackers *trackers, unsigned slot)
+{
+	return (slot + PASSO_TRACKER_TURN - trackers->slot) % PASSO_TRACKER_TURN;
+}
+
+/* Clocks before one in which the turn of an axis has an effect. */
+static uint64_t clocks_to_effect(const struct passo_channel *channel, unsigned i)
+{
+	static const uint8_t effects[] = {
+	    SLOT_SETTINGS, SLOT_TARGET, SLOT_COMPARED, SLOT_LIMIT, PASSO_TRACKER_TURN + SLOT_OVER};
+	const struct passo_trackers *trackers = &channel->trackers;
+	const unsigned tick = PASSO_TRACKER_TICK(channel->axes);
+	const unsigned now = trackers->turn * PASSO_TRACKER_TURN + trackers->slot;
+	uint64_t clocks = UINT64_MAX;
+
+	for (unsigned k = 0; k < sizeof effects; k++)
+		clocks =
+		    passo_advance_least(clocks, (i * PASSO_TRACKER_TURN + effects[k] + tick - now) % tick);
+	return clocks;
+}
+
+/* Whether all units but the turns have nothing to do. */
+static bool others_settled(const struct passo_channel *channel, const struct passo_channel_inputs *inputs)
 {
 	const struct passo_trackers *trackers = &channel->trackers;
+	const bool stopped = passo_channel_stopped(channel); /* which clears without end */
 	struct passo_channel_wires wires = {0};
+	bool busy = false;
 
-	if (!trackers->present)
-		return true;
-	if (!passo_trackers_settled(channel) || trackers->clears != 0u || trackers->busy
+	if (!passo_trackers_settled(channel) || trackers->clears != (stopped ? 2u : 0u)
 	    || trackers->writes_enable || trackers->writes_setting)
-		return false;
-	const unsigned turn = turn_in_progress(channel);
-
-	if (turn < channel->axes
-	    && (trackers->now.cleared_position
-	        || trackers->now.target_down != trackers->join[turn].went_down))
 		return false;
 	passo_admission_wires(&channel->admission, inputs->bus, inputs->tables_wanted, &wires);
 	if (trackers->hold != (wires.hold || passo_inputs_requests(channel, inputs).wait))
 		return false;
 	for (unsigned i = 0; i < channel->axes; i++) {
-		const bool down = ((uint32_t)channel->line.directions >> i & 1u) != 0u;
+		const struct passo_tracker_axis *axis = &trackers->axis[i];
 		const struct passo_tracker_join *join = &trackers->join[i];
-		const bool moves = passo_trackers_path_moves(channel, i);
+		const bool down = ((uint32_t)channel->line.directions >> i & 1u) != 0u;
 
-		if (!axis_rests(&trackers->axis[i], join)
-		    || (moves && (join->went_down != down || join->turned)))
+		if (axis->step_made || axis->moves != moves(axis, channel->motion.stopping) || join->owed != 0
+		    || join->ready
+		    || (passo_trackers_path_moves(channel, i) && (join->went_down != down || join->turned)))
 			return false;
+		busy = busy || axis->moves;
 	}
-	return true;
+	return trackers->busy == busy;
+}
+
+uint64_t passo_trackers_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs)
+{
+	const struct passo_trackers *trackers = &channel->trackers;
+	const unsigned turn = turn_in_progress(channel);
+	uint64_t clocks = UINT64_MAX;
+
+	if (!trackers->present)
+		return UINT64_MAX;
+	if (!others_settled(channel, inputs))
+		return 0;
+	for (unsigned i = 0; i < channel->axes; i++) {
+		const struct passo_tracker_axis *axis = &trackers->axis[i];
+
+		if (axis->shown != (uint32_t)(axis->position >> 32))
+			clocks = passo_advance_least(clocks, clocks_to_slot(trackers, SLOT_SHOWN));
+		if (!axis_rests(trackers, i) || (i == turn && !began_so(trackers, i)))
+			clocks = passo_advance_least(clocks, clocks_to_effect(channel, i));
+	}
+	return clocks;
 }
 
 void passo_trackers_skip(struct passo_channel *channel, uint64_t clocks)
@@ -315,15 +375,18 @@ void passo_trackers_skip(struct passo_channel *channel, uint64_t clocks)
 	struct passo_trackers *trackers = &channel->trackers;
 	const uint64_t tick = PASSO_TRACKER_TICK(channel->axes);
 	const uint64_t now = trackers->turn * PASSO_TRACKER_TURN + trackers->slot;
+	const uint64_t into_turn = PASSO_TRACKER_TURN - 1u - clocks_to_slot(trackers, SLOT_OVER);
+	const bool same_turn = into_turn != 0u && into_turn + clocks < PASSO_TRACKER_TURN;
+	const bool compared = same_turn && into_turn > SLOT_COMPARED - SLOT_SETTINGS;
 
 	trackers->slot = (uint8_t)((now + clocks) % PASSO_TRACKER_TURN);
 	trackers->turn = (uint8_t)((now + clocks) % tick / PASSO_TRACKER_TURN);
 	trackers->odd = trackers->odd != ((now + clocks) / tick % 2u != 0u);
-	trackers->now = (struct passo_tracker_turn){0};
 	const unsigned axis = turn_in_progress(channel);
-	if (axis >= channel->axes)
-		return;
-	begin_turn(trackers, axis, false, trackers->hold);
-	if (trackers->slot > SLOT_COMPARED || trackers->slot == SLOT_OVER)
+	if (!same_turn)
+		trackers->now = axis < channel->axes ? begin_turn(trackers, axis, false, trackers->hold)
+		                                     : (struct passo_tracker_turn){0};
+	if (axis < channel->axes && !compared
+	    && (trackers->slot > SLOT_COMPARED || trackers->slot == SLOT_OVER))
 		compare(&trackers->now, &trackers->axis[axis]);
 }
