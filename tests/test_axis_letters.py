@@ -166,8 +166,8 @@ def test_tool_lengths_by_the_probe(tmp_path: Path, letters: str, z: int) -> None
         assert session.fields("MPos") == pytest.approx([at + 4 * (at != 0) for at in touched], abs=0.02)
         session.grbl.c.reference -= 3_500_000  # as if the first tool had been so much shorter
         assert session.line("$TPW").endswith("ok") and "[TLO:3.500]" in session.line("$#")
-        lengths = ",".join(f"{7 * (axis == z):.3f}" for axis in range(len(letters)))
-        assert f"[T:3,{lengths},0.000]" in session.line("$#")
+        rotary = ",0.000" if "C" in letters else ""
+        assert f"[T:3,0.000,0.000,7.000{rotary},0.000]" in session.line("$#")
         assert session.fields("WCO") == [3.5 * (axis == z) for axis in range(len(letters))]
 
 

@@ -91,7 +91,7 @@ def test_a_motor_that_leaves_its_encoder(tmp_path: Path) -> None:
         assert library.passo_rig_position(rig, 1) - library.passo_rig_position(rig, 2) == start
         assert board.line("$X", 5).endswith("ok") and board.line("G0 Y12", 5) == "ok"
         board.rest(3)
-        assert board.report()["MPos"] == "0.000,12.000" and not board.faults
+        assert board.report()["MPos"] == "0.000,12.000,0.000" and not board.faults
         assert library.passo_rig_position(rig, 2) - library.passo_rig_position(rig, 1) + start == 80
     with model_engine(replace(core_for(machine), encoders=0), machine.clock_hz) as engine:
         small = Machine(elf, engine)

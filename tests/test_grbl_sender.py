@@ -54,6 +54,15 @@ def booted(link: Path, patience: float = PATIENCE) -> Iterator[Sender]:
         sender.grbl.disconnect()
 
 
+def test_a_machine_of_two_axes(tmp_path: Path) -> None:
+    """Reports have Z, which it expects of every controller."""
+    machine = read_machine(paths.examples / "machines" / "laser.toml")
+    with console_at(tmp_path / "grbl", machine), booted(tmp_path / "grbl") as sender:
+        sender.start(["$X", "G21 G91", "G1 X1 Y2 F6000", "M2"])
+        sender.finish()
+        assert sender.grbl.cmpos == (1, 2, 0) and sender.events["on_error"] == 0
+
+
 @pytest.mark.parametrize("incremental", [True, False], ids=["a line per ok", "counting characters"])
 def test_a_job(connected: Sender, tmp_path: Path, incremental: bool) -> None:
     """Each line is sent once, none with an error; the end is that of `passo run`."""

@@ -241,4 +241,4 @@ def test_the_command(
     monkeypatch.setattr("sys.stdin", io.StringIO("M3 S600\nG0 Z2\nG33 Z1 K.5\nM30\n?\n"))
     assert main(["console", "--grbl", "--machine", str(path)]) == 0
     told = capsys.readouterr().out
-    assert "error" not in told and "MPos:0.000,1.000" in told
+    assert "error" not in told and "MPos:0.000,0.000,1.000" in told

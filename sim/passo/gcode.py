@@ -13,6 +13,13 @@ AXIS_LETTERS = "XYZABC"
 LINEAR = "XYZ"
 
 
+def place_of(field: str, letters: str) -> list[float]:
+    """Of each axis, in a field of a status report, which tells X, Y and Z of any machine."""
+    told = LINEAR + "".join(letter for letter in letters if letter not in LINEAR)
+    values = dict(zip(told, map(float, field.split(",")), strict=True))
+    return [values[letter] for letter in letters]
+
+
 class GcodeError(Failure):
     """A line was refused; `number` is that of grbl."""
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from passo.failure import BadInputError, Failure
+from passo.gcode import place_of
 from passo.grbl_setup import core_for
 from passo.host_home import Homing
 from passo.machine_file import MachineFile
@@ -187,7 +188,7 @@ class SerialCore(Conversation):
         self._asked = False
         if "MPos" not in report:
             raise Failure("status reports have no MPos: set $10=1")
-        self._place = [float(value) for value in report["MPos"].split(",")]
+        self._place = place_of(report["MPos"], self._file.letters)
         state = report["state"]
         if self._stops and state.startswith("Hold:0"):
             self._lines.clear()

@@ -16,6 +16,7 @@ from passo_fpga.boards import board
 from passo_fpga.generate import generate
 
 from passo.failure import Failure
+from passo.gcode import place_of
 from passo.grbl import Grbl
 from passo.grbl_setup import core_for
 from passo.machine_file import MachineFile, read_machine
@@ -209,7 +210,7 @@ class _Check(Conversation):
         raise Failure("the motor does not come to rest")
 
     def _position(self, axis: int) -> float:
-        return float(self.report()["MPos"].split(",")[axis])
+        return place_of(self.report()["MPos"], self.machine.letters)[axis]
 
 
 def check(machine: MachineFile, port: Port, tell: Callable[[str], None] = print) -> None:

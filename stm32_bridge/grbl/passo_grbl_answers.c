@@ -59,15 +59,15 @@ static void report_motors(struct passo_grbl *grbl)
 void passo_grbl_report_offsets(struct passo_grbl *grbl)
 {
 	const struct passo_gcode *gcode = grbl->player->gcode;
-	char name[] = "[G54";
+	char name[] = "[G54:";
 
 	for (unsigned system = 0; system < PASSO_GCODE_SYSTEMS; system++, name[3]++) {
 		passo_grbl_say_position(grbl, name, gcode->offsets.system[system]);
 		passo_grbl_say(grbl, "]\r\n");
 	}
-	passo_grbl_say_position(grbl, "[G28", gcode->offsets.home[0]);
-	passo_grbl_say_position(grbl, "]\r\n[G30", gcode->offsets.home[1]);
-	passo_grbl_say_position(grbl, "]\r\n[G92", gcode->shift);
+	passo_grbl_say_position(grbl, "[G28:", gcode->offsets.home[0]);
+	passo_grbl_say_position(grbl, "]\r\n[G30:", gcode->offsets.home[1]);
+	passo_grbl_say_position(grbl, "]\r\n[G92:", gcode->shift);
 	passo_grbl_say(grbl, "]\r\n");
 #ifndef PASSO_PLAIN_GCODE
 	passo_grbl_report_tools(grbl);
@@ -118,7 +118,7 @@ void passo_grbl_report_build(struct passo_grbl *grbl)
 
 void passo_grbl_report_probe(struct passo_grbl *grbl)
 {
-	passo_grbl_say_position(grbl, "[PRB", grbl->player->touch);
+	passo_grbl_say_position(grbl, "[PRB:", grbl->player->touch);
 	passo_grbl_say(grbl, grbl->player->touched ? ":1]\r\n" : ":0]\r\n");
 }
 

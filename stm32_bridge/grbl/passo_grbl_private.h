@@ -15,7 +15,7 @@ void passo_grbl_say_number(struct passo_grbl *grbl, uint64_t number);
 void passo_grbl_say_thousandths(struct passo_grbl *grbl, int64_t millionths);
 /* In report units: lengths in nanometers. */
 void passo_grbl_say_length(struct passo_grbl *grbl, int64_t nanometres);
-void passo_grbl_say_position(struct passo_grbl *grbl, const char *name, const int64_t *position);
+void passo_grbl_say_position(struct passo_grbl *grbl, const char *head, const int64_t *position);
 void passo_grbl_say_rate(struct passo_grbl *grbl, uint64_t rate); /* mm/min, UQ48.16 */
 void passo_grbl_report(struct passo_grbl *grbl);
 void passo_grbl_report_modes(struct passo_grbl *grbl);

@@ -7,6 +7,7 @@
 
 #define DIGITS_MAX 20u
 #define NANOMETRES_PER_INCH 25400000u
+#define LETTERS_TOLD 3u   /* what senders read: X, Y and Z, 0 where there is no such axis */
 #define REPORT_MACHINE 1u /* bits of $10 */
 #define REPORT_BUFFER 2u
 #define POWER_FULL 65535u
@@ -83,12 +84,19 @@ void passo_grbl_say_rate(struct passo_grbl *grbl, uint64_t rate)
 		passo_grbl_say_number(grbl, (rate + 0x8000u) >> 16);
 }
 
-void passo_grbl_say_position(struct passo_grbl *grbl, const char *name, const int64_t *position)
+void passo_grbl_say_position(struct passo_grbl *grbl, const char *head, const int64_t *position)
 {
-	passo_grbl_say(grbl, name);
-	for (unsigned axis = 0; axis < grbl->player->gcode->settings.axes; axis++) {
-		passo_grbl_say(grbl, axis > 0 ? "," : ":");
-		passo_grbl_say_length(grbl, position[axis]);
+	const struct passo_gcode_settings *settings = &grbl->player->gcode->settings;
+	unsigned axis = 0;
+
+	for (unsigned letter = 0; letter < LETTERS_TOLD || axis < settings->axes; letter++) {
+		const bool has = axis < settings->axes && (settings->left_out >> letter & 1) == 0;
+
+		if (!has && letter >= LETTERS_TOLD)
+			continue;
+		passo_grbl_say(grbl, letter > 0 ? "," : head);
+		passo_grbl_say_length(grbl, has ? position[axis] : 0);
+		axis += has ? 1 : 0;
 	}
 }
 
@@ -187,7 +195,7 @@ static void report_position(struct passo_grbl *grbl, bool machine)
 	passo_player_place(player, steps, position);
 	for (unsigned axis = 0; axis < player->gcode->settings.axes; axis++)
 		position[axis] -= machine ? 0 : passo_gcode_offset(player->gcode, axis);
-	passo_grbl_say_position(grbl, machine ? "|MPos" : "|WPos", position);
+	passo_grbl_say_position(grbl, machine ? "|MPos:" : "|WPos:", position);
 }
 
 void passo_grbl_report(struct passo_grbl *grbl)
@@ -224,7 +232,7 @@ void passo_grbl_report(struct passo_grbl *grbl)
 	if (grbl->reports == 0) {
 		for (unsigned axis = 0; axis < player->gcode->settings.axes; axis++)
 			offset[axis] = passo_gcode_offset(player->gcode, axis);
-		passo_grbl_say_position(grbl, "|WCO", offset);
+		passo_grbl_say_position(grbl, "|WCO:", offset);
 		grbl->reports = PASSO_GRBL_REPORTS;
 	} else if (grbl->reports-- == PASSO_GRBL_REPORTS) {
 		grbl->accessories = accessories;

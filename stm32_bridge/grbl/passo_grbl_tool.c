@@ -48,12 +48,11 @@ void passo_grbl_report_tools(struct passo_grbl *grbl)
 
 		if (length == 0)
 			continue;
+		passo_gcode_position offset = {0};
+		offset[tool_axis(grbl)] = length;
 		passo_grbl_say(grbl, "[T:");
 		passo_grbl_say_number(grbl, tool + 1u);
-		for (unsigned axis = 0; axis < gcode->settings.axes; axis++) {
-			passo_grbl_say(grbl, ",");
-			passo_grbl_say_length(grbl, axis == tool_axis(grbl) ? length : 0);
-		}
+		passo_grbl_say_position(grbl, ",", offset);
 		passo_grbl_say(grbl, ",");
 		passo_grbl_say_length(grbl, 0); /* the radius */
 		passo_grbl_say(grbl, "]\r\n");

@@ -4,6 +4,7 @@
 import re
 from typing import Any
 
+from passo.gcode import place_of
 from passo.grbl import Grbl
 
 ROOM = 255  # bytes
@@ -59,8 +60,11 @@ class GrblConsole:
         return {"state": state, **dict(field.split(":", 1) for field in fields)}
 
     def fields(self, name: str) -> list[float]:
-        """The numbers of a field of a status report."""
-        return [float(number) for number in self.status()[name].split(",")]
+        """The numbers of a field of a status report; of positions one for each axis."""
+        field = self.status()[name]
+        if name in ("MPos", "WPos", "WCO"):
+            return place_of(field, self.grbl.machine.letters)
+        return [float(number) for number in field.split(",")]
 
     @property
     def answers(self) -> list[str]:
