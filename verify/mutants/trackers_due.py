@@ -3,6 +3,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import product
 from typing import Any, NamedTuple
 
 from verify.mutants.motions_judge import Steps
@@ -80,6 +81,16 @@ def applied(hand: Hand, writes: Sequence[tuple[int, dict[str, Any]]], tick: int)
     while hand.applied < len(writes) and writes[hand.applied][0] <= tick:
         hand = hand._replace(**writes[hand.applied][1], applied=hand.applied + 1)
         yield hand
+
+
+def either_way(
+    changes: Sequence[tuple[int, int]], tracker: Steps, lead: int
+) -> Iterator[list[tuple[int, int]]]:
+    """The changes of joined(); those while it is decided that a step is made may come before or after it."""
+    decides = range(min(0, -lead) - 1, max(0, -lead) + 2)
+    counts = {clock + n for clock, _ in tracker for n in decides}
+    for shifts in product(*((0, -1, 1) if clock in counts else (0,) for clock, _ in changes)):
+        yield [(clock + shift, way) for (clock, way), shift in zip(changes, shifts, strict=True)]
 
 
 def joined(path: Steps, tracker: Steps, changes: Sequence[tuple[int, int]], lead: int) -> list[Due]:

@@ -18,7 +18,7 @@ from tests.helpers.closed_form import ONE, Line, Ramp, substep_clocks
 from verify.mutants import registers_judge
 from verify.mutants.engine_judge import Check
 from verify.mutants.motions_judge import FRAME, TIME, Steps, all_substeps
-from verify.mutants.trackers_due import HALF, LATE, STEP, Due, Hand, joined, nearest
+from verify.mutants.trackers_due import HALF, LATE, STEP, Due, Hand, either_way, joined, nearest
 from verify.mutants.trackers_host import Host, phases
 
 MODULES = ("passo_tracker", "passo_trackers", "passo_tracker_join")
@@ -403,7 +403,10 @@ class Trackers(Host):
                         fitting |= {
                             lead
                             for lead in known - fitting
-                            if self.fits(axis, joined(path, steps, changes, lead))
+                            if any(
+                                self.fits(axis, joined(path, steps, changed, lead))
+                                for changed in either_way(changes, steps, lead)
+                            )
                         }
             assert fitting, f"steps of axis {axis} of path and tracker"
             known = fitting
