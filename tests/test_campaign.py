@@ -352,7 +352,7 @@ def deadly(case: Case, engine: str) -> Outcome:
 
 
 def test_a_case_that_ends_its_process_is_a_failure(client: Any) -> None:
-    """Those that waited for the same process are not, however often it died."""
+    """Those that were on the same process are not."""
     result = carry_out(Campaign(16, SEED, player=deadly), client)
     assert result.moves == 16
     assert {number: fault.kind for number, fault in result.faults.items()} == dict.fromkeys(DEADLY, "crash")

@@ -10,7 +10,7 @@ from itertools import islice
 from typing import Any
 
 from passo.campaign_moves import Case, draw
-from passo.campaign_play import Batch, Player, play, play_batch
+from passo.campaign_play import Batch, Player, play, play_apart, play_batch
 from passo.campaign_shrink import shrink
 from passo.failure import Failure
 from passo.pulse_judge import Fault
@@ -80,36 +80,38 @@ def carry_out(campaign: Campaign, client: Any, tell: Callable[[Result], None] = 
     waiting = campaign.batches(workers)
     name = uuid.uuid4().hex  # two campaigns on a cluster do not share results
 
-    def submit(first: int, count: int, alone: bool = False) -> Any:
-        key = f"passo-{name}-{first}-{count}{'-alone' if alone else ''}"
+    def submit(first: int, count: int, play_it: Callable[..., Batch | None] = play_batch) -> Any:
+        key = f"{play_it.__name__}-{name}-{first}-{count}"
         wanted = (campaign.seed, first, count, campaign.engine, campaign.player)
-        future = client.submit(play_batch, *wanted, key=key)
-        places[key] = first, count, alone
+        future = client.submit(play_it, *wanted, key=key)
+        places[key] = first, count
         return future
 
-    places: dict[str, tuple[int, int, bool]] = {}
-    suspects: list[int] = []  # they were on a process that died, perhaps because of a neighbor
+    def apart(first: int, count: int) -> Any:
+        return submit(first, count, play_apart)
+
+    places: dict[str, tuple[int, int]] = {}
     running = {submit(*one) for one in islice(waiting, IN_FLIGHT * workers)}
     try:
-        while running or suspects:
-            if not running:
-                running = {submit(suspects.pop(), 1, alone=True)}
+        while running:
             for future in _finished(running, client, lambda: tell(result)):
                 running.discard(future)
-                first, count, alone = places.pop(future.key)
+                first, count = places.pop(future.key)
                 try:
-                    result.add(future.result())
+                    batch = future.result()
                 except (CancelledError, OSError) as error:
                     raise Failure(f"lost the connection to the cluster: {error}") from None
-                except KilledWorker:
-                    # A case that ends its process is a failure; the others of its batch are not.
-                    if count == 1 and not alone:
-                        suspects.append(first)
-                    elif alone:
-                        text = "the process that played it died, again and again"
-                        result.add(Batch(first, 1, Counter(moves=1), faults={first: Fault("crash", text)}))
-                    else:
-                        running |= {submit(number, 1) for number in range(first, first + count)}
+                except KilledWorker:  # whichever case of whichever batch ended it
+                    future.release()
+                    running.add(apart(first, count))
+                    continue
+                if batch:
+                    result.add(batch)
+                elif count > 1:
+                    running |= {apart(number, 1) for number in range(first, first + count)}
+                else:
+                    fault = Fault("crash", "the process that played it died")
+                    result.add(Batch(first, 1, Counter(moves=1), faults={first: fault}))
                 future.release()
                 running |= {submit(*following) for following in islice(waiting, 1)}
                 result.seconds = time.monotonic() - began

@@ -14,11 +14,10 @@ from passo.console import leave_interrupts
 from passo.failure import BadInputError
 from passo.run import AXES_OF_CORES, parameters_for
 
-DEATHS = 2  # of processes that a case may cause before it is one that crashes
 PATIENCE = 6  # seconds until a cluster must answer
 # Workers of this machine may sleep, with all of it. Nobody looks at the profiles that each takes of itself.
 LOCAL = {
-    "distributed.scheduler.allowed-failures": DEATHS,
+    "distributed.scheduler.allowed-failures": 0,  # what was on a process that died is played apart
     "distributed.scheduler.worker-ttl": None,
     "distributed.worker.profile.enabled": False,
 }
