@@ -203,7 +203,7 @@ static void clock_clearing(
 	trackers->clears_position = trackers->clears_position || wires->zero;
 }
 
-/* As others see it, one clock late. */
+/* Whether an axis moves; others see it one clock later. */
 static bool moves(const struct passo_tracker_axis *axis, bool brake)
 {
 	return axis->velocity != 0u || (axis->enabled && !axis->at_target && !brake);
@@ -352,13 +352,13 @@ static bool others_settled(const struct passo_channel *channel, const struct pas
 uint64_t passo_trackers_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs)
 {
 	const struct passo_trackers *trackers = &channel->trackers;
-	const unsigned turn = turn_in_progress(channel);
 	uint64_t clocks = UINT64_MAX;
 
 	if (!trackers->present)
 		return UINT64_MAX;
 	if (!others_settled(channel, inputs))
 		return 0;
+	const unsigned turn = turn_in_progress(channel);
 	for (unsigned i = 0; i < channel->axes; i++) {
 		const struct passo_tracker_axis *axis = &trackers->axis[i];
 

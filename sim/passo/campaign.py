@@ -80,18 +80,15 @@ def carry_out(campaign: Campaign, client: Any, tell: Callable[[Result], None] = 
     waiting = campaign.batches(workers)
     name = uuid.uuid4().hex  # two campaigns on a cluster do not share results
 
-    def submit(first: int, count: int, play_it: Callable[..., Batch | None] = play_batch) -> Any:
+    def submit(play_it: Callable[..., Batch | None], first: int, count: int) -> Any:
         key = f"{play_it.__name__}-{name}-{first}-{count}"
         wanted = (campaign.seed, first, count, campaign.engine, campaign.player)
         future = client.submit(play_it, *wanted, key=key)
         places[key] = first, count
         return future
 
-    def apart(first: int, count: int) -> Any:
-        return submit(first, count, play_apart)
-
     places: dict[str, tuple[int, int]] = {}
-    running = {submit(*one) for one in islice(waiting, IN_FLIGHT * workers)}
+    running = {submit(play_batch, *one) for one in islice(waiting, IN_FLIGHT * workers)}
     try:
         while running:
             for future in _finished(running, client, lambda: tell(result)):
@@ -103,17 +100,17 @@ def carry_out(campaign: Campaign, client: Any, tell: Callable[[Result], None] = 
                     raise Failure(f"lost the connection to the cluster: {error}") from None
                 except KilledWorker:  # whichever case of whichever batch ended it
                     future.release()
-                    running.add(apart(first, count))
+                    running.add(submit(play_apart, first, count))
                     continue
                 if batch:
                     result.add(batch)
                 elif count > 1:
-                    running |= {apart(number, 1) for number in range(first, first + count)}
+                    running |= {submit(play_apart, number, 1) for number in range(first, first + count)}
                 else:
                     fault = Fault("crash", "the process that played it died")
                     result.add(Batch(first, 1, Counter(moves=1), faults={first: fault}))
                 future.release()
-                running |= {submit(*following) for following in islice(waiting, 1)}
+                running |= {submit(play_batch, *following) for following in islice(waiting, 1)}
                 result.seconds = time.monotonic() - began
                 tell(result)
     except KeyboardInterrupt:

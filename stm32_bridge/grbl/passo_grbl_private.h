@@ -15,6 +15,7 @@ void passo_grbl_say_number(struct passo_grbl *grbl, uint64_t number);
 void passo_grbl_say_thousandths(struct passo_grbl *grbl, int64_t millionths);
 /* In report units: lengths in nanometers. */
 void passo_grbl_say_length(struct passo_grbl *grbl, int64_t nanometres);
+/* After `head`: X, Y and Z on every machine, 0 for an axis that it lacks, then its other axes. */
 void passo_grbl_say_position(struct passo_grbl *grbl, const char *head, const int64_t *position);
 void passo_grbl_say_rate(struct passo_grbl *grbl, uint64_t rate); /* mm/min, UQ48.16 */
 void passo_grbl_report(struct passo_grbl *grbl);

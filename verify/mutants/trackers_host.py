@@ -210,7 +210,7 @@ class Host(Motions):
         return position
 
     def check_rest(self, enabled: int) -> None:
-        """At rest: registers and pins agree, and nothing waits. Those that would still move are not it."""
+        """At rest: registers and pins agree, and nothing waits. What would still move is ruled out."""
         state, read = self.state(), self.read()
         assert (state.enabled, state.moves) == (enabled, 0), f"{state}"
         self.hands = [{hand for hand in hands if hand.v == 0} for hands in self.hands]
