@@ -131,7 +131,7 @@ release: ## Build build/release/: archive of the commit with the example machine
 	@tools/setup.sh dev formal fpga firmware hdl path release site web # what sbom.json names
 	@$(BIN)/python -m tools.make_release
 
-synth: ## Build the bitstream of a board: BOARD=..., optional AXES=, CLOCK= (MHz), PARTS=inputs,encoders,outputs,trackers, TRACKED=axes without lines; without BOARD: list the boards.
+synth: ## Build the bitstream of a board: BOARD=..., optional AXES=, CLOCK= (MHz), PARTS=inputs,encoders,outputs,raster,compare,trackers, TRACKED=axes without lines; without BOARD: list the boards.
 	@$(if $(BOARD),tools/setup.sh fpga,tools/setup.sh)
 	@$(BIN)/python -m passo_fpga.synth $(if $(BOARD),--board $(BOARD)) $(if $(AXES),--axes $(AXES)) \
 	    $(if $(CLOCK),--clock $(CLOCK)) $(if $(PARTS),--parts $(PARTS)) $(if $(TRACKED),--tracked $(TRACKED))

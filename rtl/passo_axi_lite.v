@@ -18,6 +18,8 @@ module passo_axi_lite #(
   parameter integer INPUTS = 0,  // 1: limits, home, alarm, probe, e-stop
   parameter integer ENCODERS = 0,  // 1: encoders
   parameter integer OUTPUTS = 0,  // 1: outputs bound to the path
+  parameter integer RASTER = 0,  // 1, with OUTPUTS: raster lines
+  parameter integer COMPARE = 0,  // 1, with OUTPUTS: pulses at positions
   parameter integer TRACKERS = 0,  // 1: a second hand on every axis
   parameter integer TRACKED = 0,  // the last axes of a channel have no lines: only their trackers move them
   parameter [31:0] CLOCK_HZ = 0,  // of clk, for the host to read; 0: not told
@@ -138,6 +140,8 @@ module passo_axi_lite #(
     .INPUTS         (INPUTS),
     .ENCODERS       (ENCODERS),
     .OUTPUTS        (OUTPUTS),
+    .RASTER         (RASTER),
+    .COMPARE        (COMPARE),
     .TRACKERS       (TRACKERS),
     .TRACKED        (TRACKED),
     .CLOCK_HZ       (CLOCK_HZ),

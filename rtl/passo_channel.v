@@ -16,6 +16,8 @@ module passo_channel #(
   parameter            INPUTS          = 0,
   parameter            ENCODERS        = 0,
   parameter            OUTPUTS         = 0,
+  parameter            RASTER          = 0,
+  parameter            COMPARE         = 0,
   parameter            TRACKERS        = 0,
   parameter            TRACKED         = 0,  // the last axes have no lines
   parameter [AXES-1:0] STEP_RESET      = 0,
@@ -403,6 +405,7 @@ module passo_channel #(
     .DEPTH_LOG2    (LINE_QUEUE_LOG2),
     .STEPS_REGISTER(STEPS_REGISTER),
     .OUTPUTS       (OUTPUTS),
+    .RASTER        (RASTER),
     .TRACKERS      (TRACKERS)
   ) u_lines (
     .clk         (clk),
@@ -683,7 +686,9 @@ module passo_channel #(
       );
 
       passo_outputs #(
-        .AXES(AXES)
+        .AXES   (AXES),
+        .RASTER (RASTER),
+        .COMPARE(COMPARE)
       ) u_outputs (
         .clk             (clk),
         .rst             (rst),

@@ -21,6 +21,8 @@ module passo_core #(
   parameter integer INPUTS = 0,  // 1: limits, home, alarm, probe, e-stop
   parameter integer ENCODERS = 0,  // 1: encoders
   parameter integer OUTPUTS = 0,  // 1: outputs bound to the path
+  parameter integer RASTER = 0,  // 1, with OUTPUTS: raster lines
+  parameter integer COMPARE = 0,  // 1, with OUTPUTS: pulses at positions
   parameter integer TRACKERS = 0,  // 1: a second hand on every axis
   parameter integer TRACKED = 0,  // the last axes of a channel have no lines: only their trackers move them
   parameter [31:0] CLOCK_HZ = 0,  // of clk, for the host to read; 0: not told
@@ -90,6 +92,12 @@ module passo_core #(
     end
     if (OUTPUTS < 0 || OUTPUTS > 1) begin : g_bad_outputs
       passo_parameter_OUTPUTS_must_be_0_or_1 u_error ();
+    end
+    if (RASTER < 0 || RASTER > 1 || (RASTER != 0 && OUTPUTS == 0)) begin : g_bad_raster
+      passo_parameter_RASTER_must_be_0_or_with_OUTPUTS_1 u_error ();
+    end
+    if (COMPARE < 0 || COMPARE > 1 || (COMPARE != 0 && OUTPUTS == 0)) begin : g_bad_compare
+      passo_parameter_COMPARE_must_be_0_or_with_OUTPUTS_1 u_error ();
     end
     if (TRACKERS < 0 || TRACKERS > 1) begin : g_bad_trackers
       passo_parameter_TRACKERS_must_be_0_or_1 u_error ();
@@ -226,6 +234,8 @@ module passo_core #(
     .INPUTS  (INPUTS),
     .ENCODERS(ENCODERS),
     .OUTPUTS (OUTPUTS),
+    .RASTER  (RASTER),
+    .COMPARE (COMPARE),
     .TRACKERS(TRACKERS)
   ) u_rules (
     .clk        (clk),
@@ -252,6 +262,8 @@ module passo_core #(
     .INPUTS         (INPUTS),
     .ENCODERS       (ENCODERS),
     .OUTPUTS        (OUTPUTS),
+    .RASTER         (RASTER),
+    .COMPARE        (COMPARE),
     .TRACKERS       (TRACKERS),
     .TRACKED        (TRACKED),
     .CLOCK_HZ       (CLOCK_HZ),
@@ -344,6 +356,8 @@ module passo_core #(
         .INPUTS         (INPUTS),
         .ENCODERS       (ENCODERS),
         .OUTPUTS        (OUTPUTS),
+        .RASTER         (RASTER),
+        .COMPARE        (COMPARE),
         .TRACKERS       (TRACKERS),
         .TRACKED        (TRACKED),
         .STEP_RESET     (STEP_RESET[channel*AXES+:AXES]),

@@ -9,7 +9,7 @@
 //
 // A push is checked word by word (`bus_check`; the word is stable from two clocks before): room for the line after
 // all lines of this frame before it, M not 0 and below 2^30, N_i <= M, no reserved bits. `refusal` answers one clock
-// later. With OUTPUTS the output word follows the steps: power 0 on a raster line, no reserved bits.
+// later. With OUTPUTS the output word follows the steps: no reserved bits; with RASTER a raster line, power 0.
 // One subtractor serves the checks and computes the stored M - 1, the number of the last substep. The flags are
 // stored with it, each direction with its N_i.
 //
@@ -23,6 +23,7 @@ module passo_line_queue #(
   parameter DEPTH_LOG2     = 8,
   parameter STEPS_REGISTER = 0,  // 1: block RAMs have an output register
   parameter OUTPUTS        = 0,  // 1: a line has an output word
+  parameter RASTER         = 0,  // 1: it may be a raster line
   parameter TRACKERS       = 0   // 1: `moves` is wanted
 ) (
   input  wire                clk,
@@ -62,7 +63,7 @@ module passo_line_queue #(
   localparam INDEX_OUTPUT = INDEX_STEPS + AXES;
   localparam INDEX_LAST = INDEX_OUTPUT - 1 + OUTPUTS;
   localparam [4:0] COUNT_MSB = 5'd29;
-  localparam [4:0] OUTPUT_MSB = 5'd25;
+  localparam [4:0] OUTPUT_MSB = RASTER != 0 ? LINE_OUTPUT_RASTER_LSB : LINE_OUTPUT_PROPORTIONAL_LSB;
   localparam [DEPTH_LOG2:0] DEPTH = 1 << DEPTH_LOG2;
 
   // Writing, word by word

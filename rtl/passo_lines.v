@@ -13,6 +13,7 @@ module passo_lines #(
   parameter DEPTH_LOG2     = 8,
   parameter STEPS_REGISTER = 0,  // 1: block RAMs have an output register
   parameter OUTPUTS        = 0,  // 1: a line has an output word
+  parameter RASTER         = 0,  // 1: it may be a raster line
   parameter TRACKERS       = 0   // 1: `moves` is wanted
 ) (
   input  wire                clk,
@@ -68,6 +69,7 @@ module passo_lines #(
     .DEPTH_LOG2    (DEPTH_LOG2),
     .STEPS_REGISTER(STEPS_REGISTER),
     .OUTPUTS       (OUTPUTS),
+    .RASTER        (RASTER),
     .TRACKERS      (TRACKERS)
   ) u_queue (
     .clk         (clk),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Path-synchronized outputs of a channel: digital outputs, power, raster, position compare.
+// Path-synchronized outputs of a channel: digital outputs and power; with RASTER raster lines, with COMPARE position
+// compare.
 //
 // The output word of a line: power (15:0), digital outputs (23:16), proportional (24), raster (25).
 //
@@ -13,10 +14,13 @@
 `default_nettype none
 
 module passo_outputs #(
-  parameter AXES = 4
+  parameter AXES    = 4,
+  parameter RASTER  = 0,  // 1: raster lines
+  parameter COMPARE = 0   // 1: position compare
 ) (
   input  wire            clk,
   input  wire            rst,
+  /* verilator lint_off UNUSEDSIGNAL */  // without RASTER or COMPARE
   // bus; `select`: a push to the raster queue
   input  wire            bus_frame,
   input  wire            bus_commit,
@@ -57,11 +61,14 @@ module passo_outputs #(
   // axes
   input  wire [AXES-1:0] step_made,
   input  wire [AXES-1:0] step_direction,
+  /* verilator lint_on UNUSEDSIGNAL */
   // pins
   output reg  [     7:0] outputs,
   output wire            power,
   output wire            compare
 );
+
+  `include "passo_registers.vh"
 
   wire        first;
   wire        take;
@@ -113,27 +120,40 @@ module passo_outputs #(
     end
   end
 
-  passo_raster u_raster (
-    .clk        (clk),
-    .rst        (rst),
-    .bus_frame  (bus_frame),
-    .bus_commit (bus_commit),
-    .bus_check  (bus_check),
-    .bus_write  (bus_write),
-    .select     (select),
-    .bus_data   (bus_data),
-    .flush      (stopped),
-    .refusal    (refusal),
-    .room       (raster_room),
-    .line_begins(line_begins),
-    .substep    (substep),
-    .raster     (word[25]),
-    .pitch      (pitch),
-    .first      (first),
-    .take       (take),
-    .value      (value),
-    .missed     (missed)
-  );
+  generate
+    if (RASTER != 0) begin : g_raster
+      passo_raster u_raster (
+        .clk        (clk),
+        .rst        (rst),
+        .bus_frame  (bus_frame),
+        .bus_commit (bus_commit),
+        .bus_check  (bus_check),
+        .bus_write  (bus_write),
+        .select     (select),
+        .bus_data   (bus_data),
+        .flush      (stopped),
+        .refusal    (refusal),
+        .room       (raster_room),
+        .line_begins(line_begins),
+        .substep    (substep),
+        .raster     (word[25]),
+        .pitch      (pitch),
+        .first      (first),
+        .take       (take),
+        .value      (value),
+        .missed     (missed)
+      );
+    end else begin : g_no_raster
+      reg first_q;
+      always @(posedge clk) first_q <= ~rst & ~stopped & (line_begins | (first_q & ~substep));
+      assign first       = first_q;
+      assign refusal     = VERDICT_OK;
+      assign raster_room = 9'd0;
+      assign take        = 1'b0;
+      assign value       = 8'd0;
+      assign missed      = 1'b0;
+    end
+  endgenerate
 
   passo_changes u_changes (
     .clk     (clk),
@@ -172,21 +192,27 @@ module passo_outputs #(
     .pin         (power)
   );
 
-  passo_compare #(
-    .AXES(AXES)
-  ) u_compare (
-    .clk           (clk),
-    .rst           (rst),
-    .axis          (compare_axis),
-    .width         (compare_width),
-    .interval      (compare_interval),
-    .write_pulse   (write_pulse),
-    .write_distance(write_distance),
-    .distance      (bus_data),
-    .step_made     (step_made),
-    .step_direction(step_direction),
-    .pin           (compare)
-  );
+  generate
+    if (COMPARE != 0) begin : g_compare
+      passo_compare #(
+        .AXES(AXES)
+      ) u_compare (
+        .clk           (clk),
+        .rst           (rst),
+        .axis          (compare_axis),
+        .width         (compare_width),
+        .interval      (compare_interval),
+        .write_pulse   (write_pulse),
+        .write_distance(write_distance),
+        .distance      (bus_data),
+        .step_made     (step_made),
+        .step_direction(step_direction),
+        .pin           (compare)
+      );
+    end else begin : g_no_compare
+      assign compare = 1'b0;
+    end
+  endgenerate
 
 `ifdef FORMAL
   `include "passo_outputs_formal.vh"

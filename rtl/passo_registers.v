@@ -18,6 +18,8 @@ module passo_registers #(
   parameter        INPUTS          = 0,
   parameter        ENCODERS        = 0,
   parameter        OUTPUTS         = 0,
+  parameter        RASTER          = 0,
+  parameter        COMPARE         = 0,
   parameter        TRACKERS        = 0,
   parameter        TRACKED         = 0,
   parameter [31:0] CLOCK_HZ        = 0,
@@ -54,7 +56,8 @@ module passo_registers #(
     TRACKED[2:0],
     LINE_QUEUE_LOG2[4:0],
     TRACKERS[0],
-    2'd0,
+    COMPARE[0],
+    RASTER[0],
     TICK_LOG2[4:0],
     AXES[3:0],
     CHANNELS[3:0]

@@ -15,6 +15,8 @@ module passo_rules #(
   parameter INPUTS   = 0,
   parameter ENCODERS = 0,
   parameter OUTPUTS  = 0,
+  parameter RASTER   = 0,
+  parameter COMPARE  = 0,
   parameter TRACKERS = 0
 ) (
   input  wire        clk,
@@ -47,6 +49,8 @@ module passo_rules #(
   localparam [12:0] WITH_INPUTS = {13{INPUTS != 0}};
   localparam [12:0] WITH_ENCODERS = {13{ENCODERS != 0}};
   localparam [12:0] WITH_OUTPUTS = {13{OUTPUTS != 0}};
+  localparam [12:0] WITH_RASTER = {13{RASTER != 0}};
+  localparam [12:0] WITH_COMPARE = {13{COMPARE != 0}};
   localparam [12:0] WITH_TRACKERS = {13{TRACKERS != 0}};
 
   `include "passo_register_rules.vh"

@@ -28,6 +28,8 @@ PARAMETERS = {
     "INPUTS": "1: limits, home, alarm, probe, e-stop",
     "ENCODERS": "1: encoders",
     "OUTPUTS": "1: outputs bound to the path",
+    "RASTER": "1, with OUTPUTS: raster lines, whose power comes from a queue",
+    "COMPARE": "1, with OUTPUTS: pulses at positions of an axis",
     "TRACKERS": "1: a second hand on every axis",
     "TRACKED": "The last axes of a channel, without lines, 0 .. AXES - 1",
     "CLOCK_HZ": "Clock in Hz, for the host to read; 0: not told",

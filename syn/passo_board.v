@@ -22,6 +22,8 @@ module passo_board #(
   parameter            INPUTS           = 0,
   parameter            ENCODERS         = 0,
   parameter            OUTPUTS          = 0,
+  parameter            RASTER           = 0,
+  parameter            COMPARE          = 0,
   parameter            TRACKERS         = 0,
   parameter            TRACKED          = 0,
   parameter            OUTPUT_PINS      = 8,             // of the core's 8 outputs
@@ -131,6 +133,8 @@ module passo_board #(
     .INPUTS        (INPUTS),
     .ENCODERS      (ENCODERS),
     .OUTPUTS       (OUTPUTS),
+    .RASTER        (RASTER),
+    .COMPARE       (COMPARE),
     .TRACKERS      (TRACKERS),
     .TRACKED       (TRACKED),
     .CLOCK_HZ      (CLOCK_HZ),

@@ -96,10 +96,11 @@ def test_every_port_of_a_part_has_a_pin_of_its_own(board: Board, parts: tuple[st
 
 def test_parts_are_chosen_by_name(made_up: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Unknown ones, those without pins, too few pins and too many are reported."""
-    assert synth.main(["--board", "made_up", "--parts", "inputs,lasers"]) == 2
-    assert (
-        "unknown part 'lasers'; must be one of inputs, encoders, outputs, trackers" in capsys.readouterr().err
-    )
+    assert synth.main(["--board", "made_up", "--parts", "inputs,magic"]) == 2
+    known = "inputs, encoders, outputs, raster, compare, trackers"
+    assert f"unknown part 'magic'; must be one of {known}" in capsys.readouterr().err
+    assert synth.main(["--board", "made_up", "--parts", "raster"]) == 2
+    assert "part 'raster' needs part 'outputs': PARTS=outputs,raster" in capsys.readouterr().err
     assert synth.main(["--board", "made_up", "--parts", "inputs"]) == 2
     assert "'made_up': the table has no pins for part 'inputs'; it has none" in capsys.readouterr().err
     table = MADE_UP + "[encoders]\nencoder_a = [23, 25]\nencoder_b = [26]\nencoder_index = 27\n"
@@ -390,7 +391,7 @@ def test_boards_are_listed_and_unknown_ones_refused(capsys: pytest.CaptureFixtur
     """`make synth` without a board tells which there are; so does the error."""
     assert synth.main([]) == 0
     listed = capsys.readouterr().out
-    assert "every board, without pins: PARTS=trackers" in listed
+    assert "every board, without pins: PARTS=raster,trackers" in listed
     assert all(board.name in listed and board.title in listed for board in BOARDS)
     assert synth.main(["--board", "nowhere"]) == 2
     assert "unknown board 'nowhere'; must be one of" in capsys.readouterr().err
@@ -591,7 +592,7 @@ capacity = 7680
         ('device = "up5k"', 'device = { like = "hx8k" }', "device.capacity: missing; must be a number"),
         ('"iceprog"', "7", "load: must be a text, not 7"),
         ('["-s"]', '"-s"', "pack: must be a list of texts, not '-s'"),
-        ("pack =", "packer =", "packer: unknown key; must be one of axes, clock, device"),
+        ("pack =", "packer =", "packer: unknown key; must be one of axes, clock, compare"),
         ("mhz = 30", "mhz = 0", "clock.mhz: must be a number above 0, not 0"),
         ("mhz = 30", "mhz = true", "clock.mhz: must be a number above 0, not True"),
         ('pll = "pad"', 'pll = "rim"', "clock.pll: must be one of core, pad, not 'rim'"),

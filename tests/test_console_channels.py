@@ -212,9 +212,7 @@ def test_a_dead_wire_is_told_once(bench: Bench, monkeypatch: pytest.MonkeyPatch)
         assert bench.take().count("note: STUCK_LOW: ") == 1
         assert bench.ask("stop channel=1").startswith("error: STUCK_LOW: ")
         bench.terminal.run(50_000)
-        assert (
-            bench.take() == "note: channel 1: NOT_STOPPED: the stop is not acknowledged yet; it is resent\n"
-        )
+        assert bench.take() == "note: channel 1: NOT_STOPPED: stop not acknowledged yet; resent\n"
     bench.terminal.run(200_000)
     assert "note: the core answers\n" in bench.take()
     assert states(bench) == ["RUN", "STOPPED", "RUN"]

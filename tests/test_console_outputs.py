@@ -17,7 +17,7 @@ COMPARE = "compare axis=0 position=100 interval=37 width=20us"
 
 @pytest.fixture
 def bench() -> Iterator[Bench]:
-    made = Bench(outputs=1)
+    made = Bench(outputs=1, raster=1, compare=1)
     made.ask("enable")
     yield made
     made.close()
@@ -299,7 +299,7 @@ def test_compare_pulses_on_exact_steps(bench: Bench) -> None:
 
 def test_each_channel_has_its_outputs() -> None:
     """The line names it."""
-    bench = Bench(outputs=1, channels=2, axes=2)
+    bench = Bench(outputs=1, raster=1, compare=1, channels=2, axes=2)
     assert bench.ask("output levels=3 channel=1") == "ok"
     assert bench.ask(f"{MOVE} output.levels=9 output.power=100 channel=1") == "ok"
     bench.ask("wait")
@@ -312,7 +312,7 @@ def test_each_channel_has_its_outputs() -> None:
 def test_the_command_has_a_core_with_outputs() -> None:
     """--outputs, on the model and on the Verilated core."""
     typed = f"enable\noutput levels=2\n{MOVE} output.power=50\nwait\noutputs\n"
-    rtl_engine(Parameters(outputs=1)).close()  # is built before
+    rtl_engine(Parameters(outputs=1, raster=1, compare=1)).close()  # is built before
     said = {
         engine: passo_console(typed, "--engine", engine, "--outputs", "--clock", "4000000")
         for engine in ("model", "both")

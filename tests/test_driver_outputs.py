@@ -15,7 +15,7 @@ from passo.registers import TriggerSource
 
 from tests.helpers.driver_wire import CLOCK_HZ, Q32, Wire, by_speed, error_of, open_driver, path, struct
 
-PARAMETERS = Parameters(inputs=1, encoders=1, outputs=1)
+PARAMETERS = Parameters(inputs=1, encoders=1, outputs=1, raster=1, compare=1)
 FULL = 65535
 
 
@@ -373,7 +373,7 @@ def test_every_kind_of_move(name: str) -> None:
 @pytest.mark.parametrize("queue", [4, 7])
 def test_a_stream_of_lines_with_outputs(queue: int) -> None:
     """Each line's word with its first step, whatever fits into a frame."""
-    pins = Pins(Parameters(outputs=1, axes=3, line_queue_log2=queue))
+    pins = Pins(Parameters(outputs=1, raster=1, compare=1, axes=3, line_queue_log2=queue))
     driver = open_driver(pins)
     count = 100
     lines, ramps = path(count, 72)

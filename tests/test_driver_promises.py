@@ -54,7 +54,7 @@ def test_the_bound_of_racking_is_twice_the_way_to_the_slow_speed(racking: int, e
 
 
 NULL = ffi().NULL
-WITH_ALL = Parameters(inputs=1, outputs=1, encoders=1, trackers=1)
+WITH_ALL = Parameters(inputs=1, outputs=1, raster=1, compare=1, encoders=1, trackers=1)
 POINTERS = [
     *[(call, NULL) for call in ("arm_trigger", "read_trigger", "read_inputs", "probe", "jog", "goto")],
     *[(call, NULL) for call in ("set_output", "configure_outputs", "read_outputs", "arm_compare")],

@@ -18,8 +18,8 @@ MACHINE = "AXES=3", "HOMES=7", "PROBE=1", "OUTPUTS=1"
 FULL = replace(PARAMETERS, inputs=1, outputs=1)
 SECONDS = 0.4  # until it has been said
 TEXTS = {
-    "NO_INPUTS": "the core was built without inputs",
-    "NO_OUTPUTS": "the core was built without outputs",
+    "NO_INPUTS": "the core has no inputs",
+    "NO_OUTPUTS": "the core has no such outputs",
     "PARAMETERS": "the core's channels, axes or ticks do not match",
     "VERSION": "the register map has an unsupported version",
     "NOT_PASSO": "the device is not a Passo core",

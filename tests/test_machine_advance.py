@@ -14,9 +14,10 @@ from tests.test_core_advance import SEED
 from tests.test_encoders import EncoderSession
 from tests.test_outputs_advance import OutputSession
 
+PARTS = dict.fromkeys(("inputs", "encoders", "outputs", "raster", "compare"), 1)
 BUILDS = [
-    Parameters(channels=1, axes=3, inputs=1, encoders=1, outputs=1),
-    Parameters(channels=2, axes=2, line_queue_log2=3, ramp_queue_log2=3, inputs=1, encoders=1, outputs=1),
+    Parameters(axes=3, **PARTS),
+    Parameters(channels=2, axes=2, line_queue_log2=3, ramp_queue_log2=3, **PARTS),
 ]
 
 

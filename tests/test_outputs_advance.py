@@ -21,8 +21,8 @@ from tests.helpers.motions import SLOW, to_line, to_ramp
 from tests.test_core_advance import SEED, Session
 
 BUILDS = [
-    Parameters(channels=1, axes=3, outputs=1),
-    Parameters(channels=2, axes=2, line_queue_log2=3, ramp_queue_log2=3, outputs=1),
+    Parameters(channels=1, axes=3, outputs=1, raster=1, compare=1),
+    Parameters(channels=2, axes=2, line_queue_log2=3, ramp_queue_log2=3, outputs=1, raster=1, compare=1),
 ]
 SETTINGS = range(r.CHANNEL_OUTPUT_LEVELS, r.CHANNEL_COMPARE_INTERVAL + 1)
 

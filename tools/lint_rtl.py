@@ -46,7 +46,9 @@ ENDS = {
 DEPENDENT: dict[str, list[Parameters]] = {
     "TRACKED": [
         {"AXES": axes, "TRACKERS": 1, "TRACKED": tracked} for axes, tracked in ((8, 7), (8, 1), (4, 3))
-    ]
+    ],
+    "RASTER": [{"OUTPUTS": 1, "RASTER": 1}],
+    "COMPARE": [{"OUTPUTS": 1, "COMPARE": 1}],
 }
 LEVELS = ("STEP_RESET", "DIR_RESET", "ENABLE_RESET")  # a bit for each axis, default 0
 TOLD = ("CLOCK_HZ", "BUILD")  # a word, default 0

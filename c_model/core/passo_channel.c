@@ -26,8 +26,10 @@ bool passo_channel_incomplete(const struct passo_channel *channel)
 void passo_channel_reset(
     struct passo_channel *channel, const struct passo_parameters *parameters, uint8_t number)
 {
-	*channel = (struct passo_channel){
-	    .axes = parameters->axes, .number = number, .has_outputs = parameters->outputs != 0u};
+	*channel = (struct passo_channel){.axes = parameters->axes,
+	    .number = number,
+	    .has_outputs = parameters->outputs != 0u,
+	    .has_raster = parameters->raster != 0u};
 	passo_channel_registers_reset(&channel->registers);
 	channel->line_queue.room = (uint16_t)(1u << parameters->line_queue_log2);
 	channel->ramp_queue.room = (uint16_t)(1u << parameters->ramp_queue_log2);

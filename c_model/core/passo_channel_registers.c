@@ -59,7 +59,7 @@ uint32_t passo_channel_registers_value(const struct passo_channel *channel, uint
 		return passo_pack_channel_room(&(struct passo_channel_room){
 		    .line_room = channel->line_queue.room, .ramp_room = channel->ramp_queue.room});
 	case PASSO_CHANNEL_OUTPUT_STATE:
-		return passo_outputs_state(&channel->outputs);
+		return passo_outputs_state(&channel->outputs, channel->has_raster);
 	case PASSO_CHANNEL_VELOCITY:
 		return channel->path.velocity_high << 8 | channel->path.velocity_low >> 16;
 	default:

@@ -61,6 +61,7 @@ bool passo_core_reset(struct passo_core *core, const struct passo_parameters *pa
 	    || !in_range(parameters->tick_log2, PASSO_TICK_LOG2_MIN, PASSO_TICK_LOG2_MAX)
 	    || !in_range(parameters->line_queue_log2, 2, 8) || !in_range(parameters->ramp_queue_log2, 2, 8)
 	    || parameters->inputs > 1u || parameters->encoders > 1u || parameters->outputs > 1u
+	    || parameters->raster > parameters->outputs || parameters->compare > parameters->outputs
 	    || parameters->trackers > 1u || parameters->tracked >= parameters->axes
 	    || (parameters->tracked != 0u && parameters->trackers == 0u))
 		return false;

@@ -20,13 +20,13 @@ bool passo_outputs_quiet(const struct passo_outputs_unit *outputs)
 	return outputs->changes.empty;
 }
 
-uint32_t passo_outputs_state(const struct passo_outputs_unit *outputs)
+uint32_t passo_outputs_state(const struct passo_outputs_unit *outputs, bool has_raster)
 {
 	return passo_pack_channel_output_state(&(struct passo_channel_output_state){
 	    .levels = outputs->levels,
 	    .raster_empty = outputs->raster_empty,
 	    .overflow = outputs->overflow,
-	    .raster_room = outputs->raster.room,
+	    .raster_room = has_raster ? outputs->raster.room : 0u,
 	});
 }
 

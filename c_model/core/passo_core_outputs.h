@@ -134,7 +134,7 @@ void passo_outputs_reset(struct passo_outputs_unit *outputs);
 void passo_outputs_clock(struct passo_outputs_unit *outputs, const struct passo_outputs_wires *wires);
 /* Whether no change is pending, one clock late. */
 bool passo_outputs_quiet(const struct passo_outputs_unit *outputs);
-uint32_t passo_outputs_state(const struct passo_outputs_unit *outputs);
+uint32_t passo_outputs_state(const struct passo_outputs_unit *outputs, bool has_raster);
 /* Whether only counters change as long as the inputs stay as they are, and skipping such clocks. */
 bool passo_outputs_steady(const struct passo_outputs_unit *outputs, const struct passo_outputs_wires *wires);
 void passo_outputs_skip(struct passo_outputs_unit *outputs, uint64_t clocks);

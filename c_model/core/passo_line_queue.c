@@ -49,9 +49,9 @@ uint8_t passo_line_queue_refusal(const struct passo_line_queue *queue,
 		return PASSO_VERDICT_BAD_VALUE;
 	if (is_output(parameters, queue->index)) {
 		const struct passo_line_output output = passo_unpack_line_output(bus->data);
-		return (bus->data & ~PASSO_LINE_OUTPUT_DEFINED) != 0u || (output.raster && output.power != 0u)
-		         ? PASSO_VERDICT_BAD_VALUE
-		         : PASSO_VERDICT_OK;
+		const bool bad_raster = output.raster && (parameters->raster == 0u || output.power != 0u);
+		return (bus->data & ~PASSO_LINE_OUTPUT_DEFINED) != 0u || bad_raster ? PASSO_VERDICT_BAD_VALUE
+		                                                                    : PASSO_VERDICT_OK;
 	}
 	if (queue->index >= INDEX_STEPS && bus->data > queue->checked_substeps)
 		return PASSO_VERDICT_BAD_VALUE;

@@ -401,6 +401,7 @@ struct passo_channel {
 	uint8_t axes;
 	uint8_t number;
 	bool has_outputs; /* OUTPUTS */
+	bool has_raster;  /* RASTER */
 	struct passo_channel_registers registers;
 	struct passo_admission admission;
 	struct passo_line_queue line_queue;

@@ -17,6 +17,8 @@ struct passo_parameters {
 	uint8_t inputs; /* INPUTS, 0 or 1: limits, home, alarm, probe, e-stop */
 	uint8_t encoders; /* ENCODERS, 0 or 1 */
 	uint8_t outputs; /* OUTPUTS, 0 or 1: outputs bound to the path */
+	uint8_t raster; /* RASTER, 0 or 1, with OUTPUTS: raster lines, whose power comes from a queue */
+	uint8_t compare; /* COMPARE, 0 or 1, with OUTPUTS: pulses at positions of an axis */
 	uint8_t trackers; /* TRACKERS, 0 or 1: a second hand on every axis */
 	uint8_t tracked; /* TRACKED, 0 .. AXES - 1: the last axes, which have no lines: only their trackers move them */
 	uint32_t clock_hz; /* CLOCK_HZ, what the host reads as the clock, in Hz; 0: not told */
@@ -105,6 +107,8 @@ enum passo_input {
     X(inputs, INPUTS) \
     X(encoders, ENCODERS) \
     X(outputs, OUTPUTS) \
+    X(raster, RASTER) \
+    X(compare, COMPARE) \
     X(trackers, TRACKERS) \
     X(tracked, TRACKED) \
     X(clock_hz, CLOCK_HZ) \

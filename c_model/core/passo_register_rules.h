@@ -13,9 +13,11 @@
 
 enum passo_part {
 	PASSO_PART_NONE,
-	PASSO_PART_INPUTS,
+	PASSO_PART_COMPARE,
 	PASSO_PART_ENCODERS,
+	PASSO_PART_INPUTS,
 	PASSO_PART_OUTPUTS,
+	PASSO_PART_RASTER,
 	PASSO_PART_TRACKERS
 };
 
@@ -103,7 +105,7 @@ static inline struct passo_rule passo_channel_rule(unsigned address)
 	case PASSO_CHANNEL_RAMP:
 		return (struct passo_rule){.push = true, .defined = 0xFFFFFFFFu, .maximum = 0xFFFFFFFFu};
 	case PASSO_CHANNEL_RASTER:
-		return (struct passo_rule){.push = true, .part = PASSO_PART_OUTPUTS, .defined = 0xFFFFFFFFu, .maximum = 0xFFFFFFFFu};
+		return (struct passo_rule){.push = true, .part = PASSO_PART_RASTER, .defined = 0xFFFFFFFFu, .maximum = 0xFFFFFFFFu};
 	case PASSO_CHANNEL_OUTPUT_LEVELS:
 		return (struct passo_rule){.write = true, .needs_quiet = true, .part = PASSO_PART_OUTPUTS, .defined = 0x000000FFu, .maximum = 0x000000FFu};
 	case PASSO_CHANNEL_OUTPUT_LAG:
@@ -113,13 +115,13 @@ static inline struct passo_rule passo_channel_rule(unsigned address)
 	case PASSO_CHANNEL_POWER_REFERENCE:
 		return (struct passo_rule){.write = true, .nonzero = true, .part = PASSO_PART_OUTPUTS, .defined = 0xFFFFFFFFu, .maximum = 0x80000000u};
 	case PASSO_CHANNEL_RASTER_PITCH:
-		return (struct passo_rule){.write = true, .nonzero = true, .part = PASSO_PART_OUTPUTS, .defined = 0x3FFFFFFFu, .maximum = 0x3FFFFFFFu};
+		return (struct passo_rule){.write = true, .nonzero = true, .part = PASSO_PART_RASTER, .defined = 0x3FFFFFFFu, .maximum = 0x3FFFFFFFu};
 	case PASSO_CHANNEL_COMPARE_PULSE:
-		return (struct passo_rule){.write = true, .needs_quiet = true, .part = PASSO_PART_OUTPUTS, .defined = 0x0007FFFFu, .maximum = 0x0007FFFFu};
+		return (struct passo_rule){.write = true, .needs_quiet = true, .part = PASSO_PART_COMPARE, .defined = 0x0007FFFFu, .maximum = 0x0007FFFFu};
 	case PASSO_CHANNEL_COMPARE_DISTANCE:
-		return (struct passo_rule){.write = true, .needs_quiet = true, .part = PASSO_PART_OUTPUTS, .defined = 0xFFFFFFFFu, .maximum = 0xFFFFFFFFu};
+		return (struct passo_rule){.write = true, .needs_quiet = true, .part = PASSO_PART_COMPARE, .defined = 0xFFFFFFFFu, .maximum = 0xFFFFFFFFu};
 	case PASSO_CHANNEL_COMPARE_INTERVAL:
-		return (struct passo_rule){.write = true, .nonzero = true, .part = PASSO_PART_OUTPUTS, .defined = 0xFFFFFFFFu, .maximum = 0xFFFFFFFFu};
+		return (struct passo_rule){.write = true, .nonzero = true, .part = PASSO_PART_COMPARE, .defined = 0xFFFFFFFFu, .maximum = 0xFFFFFFFFu};
 	case PASSO_CHANNEL_OUTPUT_STATE:
 		return (struct passo_rule){.read = true, .part = PASSO_PART_OUTPUTS};
 	case PASSO_CHANNEL_POSITION_BASE + 0u:

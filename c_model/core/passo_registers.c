@@ -56,6 +56,8 @@ static uint32_t parameters_word(const struct passo_parameters *parameters)
 	    .inputs = parameters->inputs,
 	    .encoders = parameters->encoders,
 	    .outputs = parameters->outputs,
+	    .raster = parameters->raster,
+	    .compare = parameters->compare,
 	    .trackers = parameters->trackers,
 	    .tracked = parameters->tracked,
 	});

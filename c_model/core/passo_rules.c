@@ -16,6 +16,10 @@ static bool has_part(const struct passo_parameters *parameters, enum passo_part 
 		return parameters->outputs != 0u;
 	case PASSO_PART_TRACKERS:
 		return parameters->trackers != 0u;
+	case PASSO_PART_RASTER:
+		return parameters->raster != 0u;
+	case PASSO_PART_COMPARE:
+		return parameters->compare != 0u;
 	case PASSO_PART_NONE:
 		break;
 	}

@@ -156,7 +156,7 @@ static inline struct passo_ramp_control passo_unpack_ramp_control(uint32_t word)
 
 /* Line output. With OUTPUTS the last word of a line. */
 struct passo_line_output {
-	bool     raster;       /* The power comes from the raster queue; the field is then 0. */
+	bool     raster;       /* The power comes from the raster queue (with RASTER); the field is then 0. */
 	bool     proportional; /* Power in proportion to the present velocity. */
 	uint8_t  levels;       /* Levels of the digital outputs. */
 	uint16_t power;        /* Power, UQ0.16, but 65535 is 1.0. */
@@ -212,6 +212,8 @@ struct passo_parameters_word {
 	uint8_t tracked;         /* TRACKED. */
 	uint8_t line_queue_log2; /* LINE_QUEUE_LOG2. */
 	bool    trackers;        /* TRACKERS. */
+	bool    compare;         /* COMPARE. */
+	bool    raster;          /* RASTER. */
 	uint8_t tick_log2;       /* TICK_LOG2. */
 	uint8_t axes;            /* AXES per channel. */
 	uint8_t channels;        /* CHANNELS. */
@@ -226,6 +228,8 @@ static inline uint32_t passo_pack_parameters(const struct passo_parameters_word 
 	     | ((uint32_t)word->tracked & 0x7u) << 21
 	     | ((uint32_t)word->line_queue_log2 & 0x1Fu) << 16
 	     | ((uint32_t)word->trackers & 0x1u) << 15
+	     | ((uint32_t)word->compare & 0x1u) << 14
+	     | ((uint32_t)word->raster & 0x1u) << 13
 	     | ((uint32_t)word->tick_log2 & 0x1Fu) << 8
 	     | ((uint32_t)word->axes & 0xFu) << 4
 	     | ((uint32_t)word->channels & 0xFu);
@@ -241,6 +245,8 @@ static inline struct passo_parameters_word passo_unpack_parameters(uint32_t word
 	    .tracked = (uint8_t)(word >> 21 & 0x7u),
 	    .line_queue_log2 = (uint8_t)(word >> 16 & 0x1Fu),
 	    .trackers = (word >> 15 & 0x1u) != 0u,
+	    .compare = (word >> 14 & 0x1u) != 0u,
+	    .raster = (word >> 13 & 0x1u) != 0u,
 	    .tick_log2 = (uint8_t)(word >> 8 & 0x1Fu),
 	    .axes = (uint8_t)(word >> 4 & 0xFu),
 	    .channels = (uint8_t)(word & 0xFu),
@@ -607,7 +613,7 @@ static inline struct passo_channel_compare_pulse passo_unpack_channel_compare_pu
 
 /* Output state. State of the outputs. */
 struct passo_channel_output_state {
-	uint16_t raster_room;  /* Free words of the raster queue. A push counts from the moment its frame is accepted. */
+	uint16_t raster_room;  /* Free words of the raster queue; 0 without RASTER. A push counts from the moment its frame is accepted. */
 	bool     overflow;     /* More than 256 changes waited for the lag since COMMAND.CLEAR. One was lost, so there is no power until then. */
 	bool     raster_empty; /* A raster line found no value since COMMAND.CLEAR: its power was 0. */
 	uint8_t  levels;       /* Levels of the digital outputs. */

@@ -38,6 +38,8 @@ architecture rtl of motion_top is
       \INPUTS\          : natural := 0;
       \ENCODERS\        : natural := 0;
       \OUTPUTS\         : natural := 0;
+      \RASTER\          : natural := 0;
+      \COMPARE\         : natural := 0;
       \TRACKERS\        : natural := 0;
       \TRACKED\         : natural := 0; -- the last axes have no lines
       \CLOCK_HZ\        : natural := 0; -- the host can read it

@@ -42,7 +42,7 @@ WAVES_FLAGS = ("--trace-fst", "--no-trace-params")  # without the constants of t
 MAKEFILE, MODEL, RUNTIME = f"V{TOP}.mk", f"V{TOP}__ALL.a", "libverilated.a"
 LEVELS = ("step_reset", "dir_reset", "enable_reset")  # parameters with a bit for each pin
 TOLD = ("clock_hz", "build")  # and those with a word
-PARTS = ("inputs", "encoders", "outputs", "trackers")
+PARTS = ("inputs", "encoders", "outputs", "raster", "compare", "trackers")
 WORD_BITS = 32
 
 

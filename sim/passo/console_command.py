@@ -62,6 +62,8 @@ def _parameters(options: argparse.Namespace) -> Parameters:
         inputs=int(options.inputs),
         encoders=int(options.encoders),
         outputs=int(options.outputs),
+        raster=int(options.outputs),
+        compare=int(options.outputs),
         trackers=int(options.trackers),
         tracked=options.tracked,
     )

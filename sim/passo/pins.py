@@ -24,6 +24,10 @@ class CoreParameters:
     encoders: int = 0
     # OUTPUTS, 0 or 1: outputs bound to the path
     outputs: int = 0
+    # RASTER, 0 or 1, with OUTPUTS: raster lines, whose power comes from a queue
+    raster: int = 0
+    # COMPARE, 0 or 1, with OUTPUTS: pulses at positions of an axis
+    compare: int = 0
     # TRACKERS, 0 or 1: a second hand on every axis
     trackers: int = 0
     # TRACKED, 0 .. AXES - 1: the last axes, which have no lines: only their trackers move them
@@ -72,5 +76,5 @@ OUTPUTS = (  # all but MISO
     Pin("irq", "1", 0, ""),
     Pin("outputs", "CHANNELS*8", 0, "outputs"),
     Pin("power", "CHANNELS", 0, "outputs"),
-    Pin("compare", "CHANNELS", 0, "outputs"),
+    Pin("compare", "CHANNELS", 0, "compare"),
 )

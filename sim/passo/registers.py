@@ -149,7 +149,7 @@ class RampControlWord(Word):
 class LineOutputWord(Word):
     """Line output."""
 
-    raster: bool = bits(25, 1, "rw")  # The power comes from the raster queue; the field is then 0.
+    raster: bool = bits(25, 1, "rw")  # The power comes from the raster queue (with RASTER); the field is then 0.
     proportional: bool = bits(24, 1, "rw")  # Power in proportion to the present velocity.
     levels: int = bits(16, 8, "rw")  # Levels of the digital outputs.
     power: int = bits(0, 16, "rw")  # Power, UQ0.16, but 65535 is 1.0.
@@ -175,6 +175,8 @@ class ParametersWord(Word):
     tracked: int = bits(21, 3, "r")  # TRACKED.
     line_queue_log2: int = bits(16, 5, "r")  # LINE_QUEUE_LOG2.
     trackers: bool = bits(15, 1, "r")  # TRACKERS.
+    compare: bool = bits(14, 1, "r")  # COMPARE.
+    raster: bool = bits(13, 1, "r")  # RASTER.
     tick_log2: int = bits(8, 5, "r")  # TICK_LOG2.
     axes: int = bits(4, 4, "r")  # AXES per channel.
     channels: int = bits(0, 4, "r")  # CHANNELS.
@@ -322,7 +324,7 @@ class ChannelComparePulseWord(Word):
 class ChannelOutputStateWord(Word):
     """Output state."""
 
-    raster_room: int = bits(16, 16, "r", 256)  # Free words of the raster queue. A push counts from the moment its frame is accepted.
+    raster_room: int = bits(16, 16, "r", 256)  # Free words of the raster queue; 0 without RASTER. A push counts from the moment its frame is accepted.
     overflow: bool = bits(9, 1, "r", False)  # More than 256 changes waited for the lag since COMMAND.CLEAR. One was lost, so there is no power until then.
     raster_empty: bool = bits(8, 1, "r", False)  # A raster line found no value since COMMAND.CLEAR: its power was 0.
     levels: int = bits(0, 8, "r", 0)  # Levels of the digital outputs.
@@ -527,6 +529,10 @@ PARAMETERS_AXES_LSB = 4
 PARAMETERS_AXES_BITS = 4
 PARAMETERS_TICK_LOG2_LSB = 8
 PARAMETERS_TICK_LOG2_BITS = 5
+PARAMETERS_RASTER_LSB = 13
+PARAMETERS_RASTER_BITS = 1
+PARAMETERS_COMPARE_LSB = 14
+PARAMETERS_COMPARE_BITS = 1
 PARAMETERS_TRACKERS_LSB = 15
 PARAMETERS_TRACKERS_BITS = 1
 PARAMETERS_LINE_QUEUE_LOG2_LSB = 16
@@ -1240,15 +1246,15 @@ TABLE = (
     Register("CHANNEL_PROBE", "CHANNEL", 0x15, 1, ChannelProbeWord.places(), "inputs"),
     Register("CHANNEL_LINE", "CHANNEL", 0x20, 1, (Field("LINE", 0, 32, "w", None),)),
     Register("CHANNEL_RAMP", "CHANNEL", 0x21, 1, (Field("RAMP", 0, 32, "w", None),)),
-    Register("CHANNEL_RASTER", "CHANNEL", 0x22, 1, (Field("RASTER", 0, 32, "w", None),), "outputs"),
+    Register("CHANNEL_RASTER", "CHANNEL", 0x22, 1, (Field("RASTER", 0, 32, "w", None),), "raster"),
     Register("CHANNEL_OUTPUT_LEVELS", "CHANNEL", 0x30, 1, (Field("LEVELS", 0, 8, "w", 0x00),), "outputs"),
     Register("CHANNEL_OUTPUT_LAG", "CHANNEL", 0x31, 1, (Field("LAG", 0, 16, "w", 0x0000),), "outputs"),
     Register("CHANNEL_PWM_STEP", "CHANNEL", 0x32, 1, (Field("PWM_STEP", 0, 24, "w", 0x001000),), "outputs"),
     Register("CHANNEL_POWER_REFERENCE", "CHANNEL", 0x33, 1, (Field("POWER_REFERENCE", 0, 32, "w", 0x80000000),), "outputs"),
-    Register("CHANNEL_RASTER_PITCH", "CHANNEL", 0x34, 1, (Field("PITCH", 0, 30, "w", 0x00000001),), "outputs"),
-    Register("CHANNEL_COMPARE_PULSE", "CHANNEL", 0x35, 1, ChannelComparePulseWord.places(), "outputs"),
-    Register("CHANNEL_COMPARE_DISTANCE", "CHANNEL", 0x36, 1, (Field("DISTANCE", 0, 32, "w", 0x00000000),), "outputs"),
-    Register("CHANNEL_COMPARE_INTERVAL", "CHANNEL", 0x37, 1, (Field("INTERVAL", 0, 32, "w", 0x00000001),), "outputs"),
+    Register("CHANNEL_RASTER_PITCH", "CHANNEL", 0x34, 1, (Field("PITCH", 0, 30, "w", 0x00000001),), "raster"),
+    Register("CHANNEL_COMPARE_PULSE", "CHANNEL", 0x35, 1, ChannelComparePulseWord.places(), "compare"),
+    Register("CHANNEL_COMPARE_DISTANCE", "CHANNEL", 0x36, 1, (Field("DISTANCE", 0, 32, "w", 0x00000000),), "compare"),
+    Register("CHANNEL_COMPARE_INTERVAL", "CHANNEL", 0x37, 1, (Field("INTERVAL", 0, 32, "w", 0x00000001),), "compare"),
     Register("CHANNEL_OUTPUT_STATE", "CHANNEL", 0x38, 1, ChannelOutputStateWord.places(), "outputs"),
     Register("CHANNEL_POSITION", "CHANNEL", 0x40, 8, (Field("POSITION", 0, 32, "r", 0x00000000),)),
     Register("CHANNEL_TRIGGER_POSITION", "CHANNEL", 0x48, 8, (Field("POSITION", 0, 32, "r", 0x00000000),), "inputs"),

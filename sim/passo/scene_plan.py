@@ -24,6 +24,8 @@ def scene_parameters(channels: Channels) -> Parameters:
         inputs=1,
         encoders=1,
         outputs=1,
+        raster=1,
+        compare=1,
         trackers=int(bool(setup.trackers or setup.settings.tracked)),
         tracked=setup.core_axes - setup.lined if setup.settings.tracked else 0,
     )

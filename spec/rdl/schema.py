@@ -159,6 +159,11 @@ class Source:
     words: tuple[Register, ...]
     enums: tuple[Enum, ...]
 
+    def parts(self) -> list[str]:
+        """The parameters of the core that some register needs."""
+        found = (register.part for block in self.core.walk() for register in block.registers)
+        return sorted({part for part in found if part})
+
     def layouts(self) -> Iterator[tuple[str, Register]]:
         """Name and fields of all that is packed: each word, and each register of several fields."""
         for word in self.words:

@@ -238,9 +238,10 @@ struct passo {
 	uint64_t velocity_peak;         /* of the last plan */
 	uint64_t velocity_top;          /* highest peak of the plans of this motion */
 	bool has_inputs, has_outputs, has_encoders, has_trackers; /* the core has */
-	bool follows;                                             /* motions may be clocked by an encoder */
-	uint8_t spindle;                                          /* its axis */
-	bool stop_time_known;                                     /* the soft-stop time is configured */
+	bool has_raster, has_compare;
+	bool follows;               /* motions may be clocked by an encoder */
+	uint8_t spindle;            /* its axis */
+	bool stop_time_known;       /* the soft-stop time is configured */
 	uint32_t reference;         /* power reference, UQ0.32 substeps per clock; 0: unknown */
 	struct passo_output output; /* of moves queued from now on */
 	bool probe_fitted;          /* the probe is configured */

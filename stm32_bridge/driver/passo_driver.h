@@ -124,8 +124,6 @@ enum passo_error passo_driver_follow(struct passo *passo, const struct passo_cha
     uint64_t top_speed, struct passo_plan *plan);
 /* Selects the core's clock for motions, if an encoder may be selected. Errors: those of a motion at rest. */
 enum passo_error passo_driver_unfollow(struct passo *passo);
-/* ARGUMENT, NOT_OPEN, or NO_OUTPUTS of a core without. */
-enum passo_error passo_driver_check_outputs(const struct passo *passo);
 /* ARGUMENT, NOT_OPEN, or NO_ENCODERS of a core without. */
 enum passo_error passo_driver_check_encoders(const struct passo *passo);
 /* Reads the levels of a core with outputs. */

@@ -29,20 +29,20 @@
 	X(CLOCK, "the core runs at another clock")                                                           \
 	X(CLOCK_UNKNOWN, "the core does not tell its clock: set it")                                         \
 	X(CORE_RESET, "the core was reset, or another host wrote to it: open it again")                      \
-	X(NOT_PREPARED, "no motion is armed and waiting for start")                                          \
+	X(NOT_PREPARED, "no motion waits for the start")                                                     \
 	X(MOVING, "only possible at rest")                                                                   \
 	X(NOT_TURNING, "only possible in continuous rotation")                                               \
 	X(STREAMING, "a stream is being fed")                                                                \
 	X(FULL, "the queues are full: try again later")                                                      \
 	X(STOPPED, "the channel is stopped: clear it first")                                                 \
-	X(NOT_STOPPED, "the stop is not acknowledged yet; it is resent")                                     \
-	X(NOT_HELD, "hold or rate is not acknowledged yet; the slower one is resent")                        \
+	X(NOT_STOPPED, "stop not acknowledged yet; resent")                                                  \
+	X(NOT_HELD, "hold or rate not acknowledged yet; the slower is resent")                               \
 	X(BROKEN, "a command was cut off: stop or abort, then clear")                                        \
 	X(NOT_CONFIGURED, "pin settings of an axis are unknown: configure it")                               \
 	X(TABLE, "needs another shape table; tables load only at rest")                                      \
 	X(PINS_TOO_SLOW, "an axis would step faster than its pin timing allows")                             \
 	X(SUPPLY, "the stream source supplied an invalid line or ramp")                                      \
-	X(NO_INPUTS, "the core was built without inputs")                                                    \
+	X(NO_INPUTS, "the core has no inputs")                                                               \
 	X(FILTER_TOO_LONG, "the input filter must be at most 65535 clocks")                                  \
 	X(WATCHDOG_TOO_LONG, "watchdog times must be at most 1023 x 65536 clocks")                           \
 	X(NO_SOURCE, "a trigger needs a source")                                                             \
@@ -55,7 +55,7 @@
 	X(INPUTS_UNKNOWN, "an input is not stable yet; motions wait for it")                                 \
 	G(NO_CLOCK, "the hardware has no microsecond clock")                                                 \
 	X(LATE, "the host was too late to retarget the motion")                                              \
-	X(NO_OUTPUTS, "the core was built without outputs")                                                  \
+	X(NO_OUTPUTS, "the core has no such outputs")                                                        \
 	P(POWER, "power must be at most 65535, and 0 on a raster line")                                      \
 	P(REFERENCE, "the power reference must be above 0 and at most 1/2")                                  \
 	P(ABOVE_REFERENCE, "faster than the power reference")                                                \
@@ -64,7 +64,7 @@
 	P(PITCH, "the raster pitch must be 1 to 2^30 - 1 substeps")                                          \
 	P(INTERVAL, "the compare interval is 0")                                                             \
 	P(PULSE, "the compare pulse must be 1 to 65535 clocks")                                              \
-	P(NO_ENCODERS, "the core was built without encoders")                                                \
+	P(NO_ENCODERS, "the core has no encoders")                                                           \
 	P(ENCODER_FILTER, "the encoder filter must be at most 255 clocks")                                   \
 	P(RATIO, "the encoder's counts per step are 0")                                                      \
 	P(FOLLOWING_LIMIT, "the following-error limit is 0")                                                 \
@@ -72,7 +72,7 @@
 	P(NO_COUNTS, "a thread needs at least one encoder count")                                            \
 	P(STEEP, "a thread must have at most 64 steps per count")                                            \
 	P(FOLLOW_SPEED, "the encoder's top speed is 0 or too high")                                          \
-	T(NO_TRACKERS, "the core was built without trackers")                                                \
+	T(NO_TRACKERS, "the core has no trackers")                                                           \
 	T(TRACKER_LIMITS, "a tracker's acceleration is too small or its speed out of range")                 \
 	X(LINE_UNDERRUN, "stopped: a line ended and none was queued")                                        \
 	X(RAMP_UNDERRUN, "stopped: ran out of ramps at speed")                                               \

@@ -66,7 +66,7 @@ enum passo_error {
 	PASSO_ERROR_LATE, /* the host was too late to retarget the motion: it continues unchanged, or stops */
 
 	/* outputs */
-	PASSO_ERROR_NO_OUTPUTS,      /* the core was built without outputs */
+	PASSO_ERROR_NO_OUTPUTS,      /* the core was built without outputs, or without RASTER or COMPARE */
 	PASSO_ERROR_POWER,           /* above PASSO_POWER_FULL, or not 0 on a raster line */
 	PASSO_ERROR_REFERENCE,       /* power reference: 0, or above half a substep per clock */
 	PASSO_ERROR_ABOVE_REFERENCE, /* a move faster than the reference of its speed-proportional power */

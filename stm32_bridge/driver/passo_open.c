@@ -21,7 +21,7 @@ enum passo_error passo_driver_disown(struct passo *passo)
 
 	if (passo->has_inputs)
 		error = passo_driver_disarm(passo);
-	if (error == PASSO_OK && passo->has_outputs)
+	if (error == PASSO_OK && passo->has_compare)
 		error = passo_driver_write(passo, PASSO_CHANNEL_COMPARE_PULSE, &none, 1);
 	if (error == PASSO_OK && passo->has_encoders)
 		error = passo_driver_write(passo, PASSO_CHANNEL_FOLLOW, &none, 1);
@@ -79,6 +79,8 @@ static enum passo_error identify(struct passo *passo, const struct passo_options
 	passo->ramp_places = (uint16_t)(1u << core.ramp_queue_log2);
 	passo->has_inputs = core.inputs;
 	passo->has_outputs = core.outputs;
+	passo->has_raster = core.raster;
+	passo->has_compare = core.compare;
 	passo->has_encoders = passo->follows = core.encoders;
 	passo->has_trackers = core.trackers;
 	passo->host->channels = core.channels;

@@ -19,13 +19,6 @@ enum passo_error passo_driver_recall_outputs(struct passo *passo)
 	return error;
 }
 
-enum passo_error passo_driver_check_outputs(const struct passo *passo)
-{
-	enum passo_error error = passo_driver_check(passo);
-
-	return error == PASSO_OK && !passo->has_outputs ? PASSO_ERROR_NO_OUTPUTS : error;
-}
-
 size_t passo_driver_line_words(const struct passo *passo, uint32_t *words, const struct passo_line *line)
 {
 	struct passo_line sent = *line;
@@ -96,8 +89,8 @@ enum passo_error passo_driver_check_output(const struct passo *passo, uint32_t w
 {
 	const struct passo_line_output output = passo_unpack_line_output(word);
 
-	if (!passo->has_outputs)
-		return word == 0u ? PASSO_OK : PASSO_ERROR_NO_OUTPUTS;
+	if ((!passo->has_outputs && word != 0u) || (output.raster && !passo->has_raster))
+		return PASSO_ERROR_NO_OUTPUTS;
 	if ((word & ~PASSO_LINE_OUTPUT_DEFINED) != 0u || (output.raster && output.power != 0u))
 		return PASSO_ERROR_SUPPLY;
 	return PASSO_OK;

@@ -11,8 +11,9 @@ from passo_fpga.table import BoardError, Table
 
 PORTS = {  # width of each port, by part
     part: {pin.name: pin.width for pin in (*INPUTS, *OUTPUTS) if pin.parameter == part}
-    for part in ("inputs", "encoders", "outputs", "trackers")
+    for part in ("inputs", "encoders", "outputs", "raster", "compare", "trackers")
 }
+NEEDS = {"raster": "outputs", "compare": "outputs"}  # parts of parts
 WITH_PINS = tuple(part for part in PORTS if PORTS[part])  # those that have a table in a board.toml
 OF_A_CHANNEL = {"CHANNELS": 1, "CHANNELS*8": 8, "1": 1}  # widths that do not depend on the axes
 LIMITS = ("limit_low", "limit_high")
@@ -33,6 +34,9 @@ def chosen(text: str) -> tuple[str, ...]:
     if unknown := sorted(set(wanted) - set(PORTS)):
         hint = meant(unknown[0], tuple(PORTS)) or f"; must be one of {', '.join(PORTS)}"
         raise BoardError(f"unknown part '{unknown[0]}'{hint}")
+    for part, needed in NEEDS.items():
+        if part in wanted and needed not in wanted:
+            raise BoardError(f"part '{part}' needs part '{needed}': PARTS={needed},{part}")
     return tuple(part for part in PORTS if part in wanted)
 
 

@@ -20,7 +20,7 @@ from passo_fpga.design import Design
 from passo_fpga.devices import DEVICES, SPI_MHZ, Device
 from passo_fpga.flow import cells, place, synthesize
 from passo_fpga.pages import markdown, mhz, write_block
-from passo_fpga.parts import PORTS
+from passo_fpga.parts import NEEDS, PORTS
 from passo_fpga.tools import prepare, workers
 
 REPORT = paths.build / "report-parts.json"
@@ -34,11 +34,11 @@ PARTS = (*PORTS, TRACKED)
 
 
 def design(device: Device, axes: int, part: str = "") -> Design:
-    """The core with one part, or with none; of "tracked" half of the axes have no lines."""
+    """The core with a part and what that needs, or with none; of "tracked" half of the axes have no lines."""
     if part == TRACKED:
         chosen = {"TRACKERS": 1, "TRACKED": axes // 2}
     else:
-        chosen = {part.upper(): 1} if part else {}
+        chosen = {name.upper(): 1 for name in (part, NEEDS.get(part)) if name}
     parameters = {"CHANNELS": 1, "AXES": axes, **device.core, **chosen}
     return Design(f"{device.name}-1x{axes}{f'-{part}' if part else ''}", device, "passo_spi_top", parameters)
 
@@ -86,7 +86,7 @@ def row(device: Device, part: str) -> dict[str, Any]:
 
 
 def _more(device: Device, axes: int, part: str) -> dict[str, int]:
-    without, with_it = cells(design(device, axes)), cells(design(device, axes, part))
+    without, with_it = cells(design(device, axes, NEEDS.get(part, ""))), cells(design(device, axes, part))
     return {column: with_it[column] - without[column] for column in COLUMNS}
 
 

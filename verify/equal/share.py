@@ -13,7 +13,7 @@ from passo.toolchain import environment, paths
 from verify.equal.coupling import Coupling
 
 TOP = "passo_spi_top"
-PARAMETERS = {"AXES": 4, "INPUTS": 1, "ENCODERS": 1, "OUTPUTS": 1, "TRACKERS": 1}
+PARAMETERS = {"AXES": 4, "INPUTS": 1, "ENCODERS": 1, "OUTPUTS": 1, "RASTER": 1, "COMPARE": 1, "TRACKERS": 1}
 FLIP_FLOPS = re.compile(r"^\$(s|a|al)?dff")
 
 

@@ -5,7 +5,7 @@
 
 module passo_core #(
   parameter CHANNELS = 1, AXES = 4, TICK_LOG2 = 7, LINE_QUEUE_LOG2 = 8, RAMP_QUEUE_LOG2 = 4, STEPS_REGISTER = 0,
-  parameter INPUTS = 0, ENCODERS = 0, OUTPUTS = 0, TRACKERS = 0, TRACKED = 0,
+  parameter INPUTS = 0, ENCODERS = 0, OUTPUTS = 0, RASTER = 0, COMPARE = 0, TRACKERS = 0, TRACKED = 0,
   parameter STEP_RESET = 0, DIR_RESET = 0, ENABLE_RESET = 0, CLOCK_HZ = 0, BUILD = 0
 ) (
   input  wire        clk,

@@ -110,7 +110,7 @@ class _Laser:
     """A core with outputs, one axis of which moves, with a step every substep."""
 
     def __init__(self, engine: Engine, **settings: int) -> None:
-        parameters = Parameters(channels=1, axes=3, outputs=1)
+        parameters = Parameters(channels=1, axes=3, outputs=1, raster=1, compare=1)
         self.engine = engine
         self.channel = Channel(Link(engine), parameters)
         for name, value in settings.items():
@@ -136,7 +136,7 @@ class _Laser:
 
 def laser() -> dict[str, Any]:
     """Energy per step from 5 % to 100 % of the speed, and through holds and resumes: relative errors."""
-    with model_engine(Parameters(channels=1, axes=3, outputs=1)) as engine:
+    with model_engine(Parameters(channels=1, axes=3, outputs=1, raster=1, compare=1)) as engine:
         core = _Laser(engine, pwm_step=(1 << 24) // 50, power_reference=1 << 31)
         core.channel.configure_motion(400, RATE_ONE, 1 << 28)
         word = LineOutputWord(raster=False, proportional=True, levels=0, power=50_000)
@@ -171,7 +171,7 @@ def raster(seed: int) -> dict[str, Any]:
     """Values that come with their exact substep."""
     rng = random.Random(f"{seed}/raster")
     values = wrong = 0
-    with model_engine(Parameters(channels=1, axes=3, outputs=1)) as engine:
+    with model_engine(Parameters(channels=1, axes=3, outputs=1, raster=1, compare=1)) as engine:
         core = _Laser(engine)
         for pitch in (1, 2, 3, 7):
             core.channel.link.write(core.channel.base + r.CHANNEL_RASTER_PITCH, pitch)

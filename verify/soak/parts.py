@@ -29,7 +29,7 @@ SETS = (
 )
 DRIVER_SET = 2  # must match BRIDGE_SET in bridge.h
 # Must match scenario_machine_parameters() in scenario_machine.c.
-MACHINE = Parameters(1, 3, 7, 5, 5, inputs=1, encoders=1, outputs=1)
+MACHINE = Parameters(1, 3, 7, 5, 5, inputs=1, encoders=1, outputs=1, raster=1, compare=1)
 # With trackers, a tick of 4 axes or of 8; played by trackers.py.
 TRACKER_SETS = (
     Parameters(1, 4, 7, 5, 5, inputs=1, trackers=1),

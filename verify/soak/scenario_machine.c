@@ -18,7 +18,9 @@ struct passo_parameters scenario_machine_parameters(void)
 	    .ramp_queue_log2 = 5,
 	    .inputs = 1,
 	    .encoders = 1,
-	    .outputs = 1};
+	    .outputs = 1,
+	    .raster = 1,
+	    .compare = 1};
 }
 
 static void write(struct scenario *scenario, uint16_t address, uint32_t word)

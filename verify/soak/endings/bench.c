@@ -21,7 +21,9 @@ static const struct passo_engine_config machine = {.core = {.channels = 1,
 						       .ramp_queue_log2 = 5,
 						       .inputs = 1,
 						       .encoders = 1,
-						       .outputs = 1},
+						       .outputs = 1,
+						       .raster = 1,
+						       .compare = 1},
     .clock_hz = CLOCK_HZ,
     .spi_half_period = HALF_PERIOD};
 
