@@ -39,13 +39,20 @@ PORT = re.compile(r"^\s*(input|output)\s+(?:wire|reg)\s+(?:\[[^]]*\]\s*)?(\w+)",
 
 
 def _cut_ports(top: str, folder: Path, cut: tuple[str, ...]) -> tuple[set[str], set[str]]:
-    """Ports ``instance.port`` of the modules that are cut out: what they are given, and what they give."""
+    """Ports ``instance.port`` of the modules that are cut out: what they are given, and what they give.
+
+    An instance in a generate block has the name ``block.instance``.
+    """
     text = re.sub(r"//.*", "", (folder / f"{top}.v").read_text(encoding="utf-8"))
     given: set[str] = set()
     gives: set[str] = set()
     for module in cut:
         ports = PORT.findall((folder / f"{module}.v").read_text(encoding="utf-8"))
-        instances = re.findall(rf"\b{module}\s*(?:#\([^;]*?\n\s*\)\s*)?(\w+)\s*\(", text)
+        block = r"(?:\bbegin : (\w+)\s+)?"
+        instances = [
+            ".".join(filter(None, found))
+            for found in re.findall(rf"{block}\b{module}\s*(?:#\([^;]*?\n\s*\)\s*)?(\w+)\s*\(", text)
+        ]
         if not instances or not ports:
             raise Failure(f"{top} has no {module} to cut out")
         for instance in instances:
