@@ -31,8 +31,8 @@ module passo_axis_registers #(
   output reg [AXES-1:0] write_enable,
   output reg [AXES-1:0] write_inputs,
   output reg [1:0] timing_place,
-  output wire [15:0] timing,  // 0 counts as 1
-  output wire timing_is_minimal,  // it is 1
+  output reg [15:0] timing,  // 0 counts as 1
+  output reg timing_is_minimal,  // it is 1
   output reg [15:0] half,  // of bus_data: the upper one after bus_write, then the lower one
   input wire [AXES*4-1:0] lost
 );
@@ -62,12 +62,14 @@ module passo_axis_registers #(
   end
 
   // bus_data stands in the clock of bus_write and the one after
-  assign timing_is_minimal = half[15:1] == 15'd0;
-  assign timing            = {half[15:1], half[0] | timing_is_minimal};
+  wire [15:0] half_next = bus_write ? bus_data[31:16] : bus_data[15:0];
+  wire        next_is_minimal = half_next[15:1] == 15'd0;
 
   always @(posedge clk) begin
-    half            <= bus_write ? bus_data[31:16] : bus_data[15:0];
-    timing_place[0] <= bus_write;
+    half              <= half_next;
+    timing            <= {half_next[15:1], half_next[0] | next_is_minimal};
+    timing_is_minimal <= next_is_minimal;
+    timing_place[0]   <= bus_write;
     if (bus_write) timing_place[1] <= bus_address == AXIS_STEP_TIMING;
     read_data        <= bus_read && bus_address == AXIS_LOST_STEPS ? selected_lost : 4'd0;
     answers_position <= bus_read & select_position;

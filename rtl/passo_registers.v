@@ -3,8 +3,8 @@
 // link keeps them.
 //
 // Promise: `read_data` is the addressed register one clock after `bus_read`, for one clock, and 0 if it is none of
-// these; it is the status word at all other times. RUN changes for all channels on the same clock. `bad_value`: a
-// checked word of RUN has a channel that the core lacks.
+// these; it is the status word at all other times. RUN changes for all channels on the same clock. `bad_value`, one
+// clock late: a word of RUN has a channel that the core lacks.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -83,8 +83,9 @@ module passo_registers #(
 
   wire [7:0] run_padded = {{(8 - CHANNELS) {1'b0}}, run};
   wire [7:0] wait_sync_padded = {{(8 - CHANNELS) {1'b0}}, wait_sync};
-  wire run_beyond = ({1'b0, bus_data[7:0]} >> CHANNELS) != 9'd0 || ({1'b0, bus_data[15:8]} >> CHANNELS) != 9'd0
-                    || {1'b0, bus_data[18:16]} >= CHANNELS[3:0];
+  reg run_beyond;  // one clock late: the word is stable by then
+  wire run_beyond_next = ({1'b0, bus_data[7:0]} >> CHANNELS) != 9'd0 || ({1'b0, bus_data[15:8]} >> CHANNELS) != 9'd0
+                         || {1'b0, bus_data[18:16]} >= CHANNELS[3:0];
 
   wire [2:0] number = bus_address[2:0];
 
@@ -113,6 +114,7 @@ module passo_registers #(
     known        <= bus_address[11:3] == 9'd0;
     is_counters  <= bus_address[11:1] == ADDRESS_REFUSALS_0[11:1];
     is_run       <= bus_address == ADDRESS_RUN;
+    run_beyond   <= run_beyond_next;
     reads_status <= ~bus_read;
     for (i = 0; i < 4; i = i + 1) reads[i] <= bus_read && known && number == i[2:0];
     reads_clock <= bus_read && known && number == ADDRESS_CLOCK[2:0];

@@ -51,7 +51,7 @@ always @(posedge clk)
     if ($past(bus_read) && !$past(bus_write) && $stable(bus_address))
       register_is_read : assert (read_data == f_word);
     if ($stable(bus_address)) begin
-      refuses_other_channels : assert (bad_value == (bus_address == ADDRESS_RUN && f_bad));
+      refuses_other_channels : assert (!$stable(bus_data) || bad_value == (bus_address == ADDRESS_RUN && f_bad));
       counters_are_known :
       assert (is_counters == (bus_address == ADDRESS_REFUSALS_0 || bus_address == ADDRESS_REFUSALS_1));
     end
