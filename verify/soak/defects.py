@@ -58,7 +58,10 @@ def defects() -> list[Defect]:
     """Read defects.toml."""
     found = []
     for entry in tomllib.loads((HERE / "defects.toml").read_text(encoding="utf-8"))["defect"]:
-        edits = tuple((edit["file"], edit["old"], edit["new"]) for edit in entry.pop("edit"))
+        if other := entry.pop("edits_of", None):
+            edits = next(defect.edits for defect in found if defect.name == other)
+        else:
+            edits = tuple((edit["file"], edit["old"], edit["new"]) for edit in entry.pop("edit"))
         found.append(Defect(edits=edits, **entry))
     return found
 
