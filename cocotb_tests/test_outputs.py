@@ -18,7 +18,7 @@ SPEEDS = ((100, 100), (100, 5), (5, 100), (50, 50), (37, 81), (140, 100), (140, 
 
 
 def test_outputs(simulator: str) -> None:
-    run(__name__, "passo_outputs", {"AXES": AXES}, simulator)
+    run(__name__, "passo_outputs", {"AXES": AXES, "RASTER": 1, "COMPARE": 1}, simulator)
 
 
 def duty(power: int) -> Fraction:
