@@ -26,7 +26,7 @@ from tests.helpers.driver_wire import (
 )
 
 MS = CLOCK_HZ // 1000
-PARAMETERS = Parameters(axes=3, inputs=1, encoders=1, outputs=1)
+PARAMETERS = Parameters(axes=3, inputs=1, encoders=1, outputs=1, raster=1, compare=1)
 
 
 @pytest.fixture
