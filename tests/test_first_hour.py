@@ -15,12 +15,12 @@ from benchmarks.first_hour import Figure, most
 
 
 def test_the_short_form(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Preview and page with a twentieth of the lines; the preview is right. A busy machine misses times."""
+    """Preview and page with a twentieth of the lines, well within their goals; it says so."""
     monkeypatch.setattr(page, "LINES", 4000)
     told: list[str] = []
     figures = first_hour.measure_short(told.append)
     assert [figure.command.split(".")[-1] for figure in figures] == ["preview", "preview", "page", "page"]
-    assert figures[1].met, figures
+    assert all(figure.met for figure in figures[:3]), figures
     assert len(told) == 2 and "5,000 lines" in figures[0].what
 
 

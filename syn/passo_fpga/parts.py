@@ -4,14 +4,14 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeVar
 
+from passo.build import PARTS
 from passo.pins import INPUTS, OUTPUTS
 from passo.values import meant
 
 from passo_fpga.table import BoardError, Table
 
 PORTS = {  # width of each port, by part
-    part: {pin.name: pin.width for pin in (*INPUTS, *OUTPUTS) if pin.parameter == part}
-    for part in ("inputs", "encoders", "outputs", "raster", "compare", "trackers")
+    part: {pin.name: pin.width for pin in (*INPUTS, *OUTPUTS) if pin.parameter == part} for part in PARTS
 }
 NEEDS = {"raster": "outputs", "compare": "outputs"}  # parts of parts
 WITH_PINS = tuple(part for part in PORTS if PORTS[part])  # those that have a table in a board.toml
