@@ -5,7 +5,8 @@
 const CLOCKS = [16e6, 72e6, 100e6];
 const GCODE = "G-code", CONSOLE = "moves";
 const PROGRAM = "program";  // name of what is typed
-const SHOWN = 40000;  // characters of a program that can be edited; of a longer file the beginning is shown
+// Characters of a program that can be edited, and of the beginning that is shown of a longer one: the browser lays them out in one task.
+const EDITED = 40000, SHOWN = 8000;
 const PROFILES = ["linear", "cosine", "sigmoid", "jerk"], PROFILE = 4;  // its place in `struct web_machine`
 const LONG_LINK = 32000;
 const EXAMPLES = {
@@ -141,7 +142,7 @@ class Form {
 
     // A long text cannot be edited here.
     putText(text, language) {
-        const long = text.length > SHOWN;
+        const long = text.length > EDITED;
         this.whole = long ? text : null;
         by("lines").value = long ? `${text.slice(0, text.lastIndexOf("\n", SHOWN))}\n…` : text;
         by("lines").readOnly = long;
