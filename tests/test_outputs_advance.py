@@ -15,7 +15,7 @@ from passo.host import Channel
 from passo.link import Link
 from passo.registers import LineOutputWord, State
 
-from tests.helpers.closed_form import Line, Ramp
+from tests.helpers.closed_form import ONE, Line, Ramp
 from tests.helpers.core_player import PlayerPair
 from tests.helpers.motions import SLOW, to_line, to_ramp
 from tests.test_core_advance import SEED, Session
@@ -30,7 +30,7 @@ SETTINGS = range(r.CHANNEL_OUTPUT_LEVELS, r.CHANNEL_COMPARE_INTERVAL + 1)
 class OutputChannel(Channel):
     """A channel whose lines have outputs of all kinds."""
 
-    def __init__(self, session: "OutputSession", number: int):
+    def __init__(self, session: Session, number: int):
         super().__init__(session.link, session.pair.parameters, number)
         self.rng = session.rng
 
@@ -91,4 +91,22 @@ def test_idle_time_is_skipped() -> None:
     pair.run(400_000)
     assert channel.state().state == State.IDLE
     assert channel.positions() == [99, -7, 0]
+    assert pair.skipped > pair.clock * 0.8
+
+
+@pytest.mark.parametrize("power", [0, 20_000, 0xFFFF])
+def test_a_motion_is_skipped(power: int) -> None:
+    """Within its ticks, between steps and edges of the PWM; levels change."""
+    pair = PlayerPair(BUILDS[0], random.Random(SEED))
+    channel = Channel(Link(pair), BUILDS[0])
+    channel.link.write(channel.base + r.CHANNEL_PWM_STEP, 1 << 12, 1 << 30)
+    outputs = [
+        LineOutputWord(raster=False, proportional=power == 0, levels=levels, power=power) for levels in (9, 5)
+    ]
+    lines = [Line(2000, (99, -7, 0)), Line(3000, (30, 0, 50), last=True)]
+    channel.push_lines([to_line(line) for line in lines], outputs)
+    channel.push_ramps([to_ramp(Ramp(ONE // 60, 500)), to_ramp(Ramp(ONE // 70, 4000))])
+    channel.start()
+    pair.run(200_000)
+    assert channel.state().state == State.RUN
     assert pair.skipped > pair.clock * 0.8

@@ -17,13 +17,14 @@ static inline uint64_t passo_advance_least(uint64_t a, uint64_t b)
 /* Clocks for which everything in the channel is quiet, except axes and profile; and skipping them. */
 uint64_t passo_advance_surroundings_quiet(
     const struct passo_channel *channel, const struct passo_channel_inputs *inputs, uint64_t clocks_to_slew);
-void passo_advance_surroundings_skip(struct passo_channel *channel, uint64_t clocks);
+void passo_advance_surroundings_skip(struct passo_channel *channel, uint64_t clocks, uint32_t substeps);
 uint64_t passo_advance_ramp_quiet(const struct passo_ramp_unit *ramp);
 uint64_t passo_advance_axis_quiet(const struct passo_channel *channel, unsigned axis);
 /* Whether no substep is in flight between path and DDA. */
 bool passo_advance_slots_empty(const struct passo_channel *channel);
 
-/* Whether a profile is running and its clock enable is on. */
+/* Whether a profile is running and its clock enable is on in each clock; that of a motion that follows is
+ * not. */
 bool passo_advance_profile_counts(const struct passo_channel *channel);
 /* Clocks to the next event of a running profile, within its tick; and skipping them. */
 uint64_t passo_advance_profile_quiet(

@@ -6,6 +6,7 @@
  * determines which clocks had a carry, provided that the velocity was constant for the last four clocks.
  */
 #include "passo_advance.h"
+#include "passo_registers.h"
 
 /* By then a ramp has always computed the next velocity and advanced. */
 static const uint32_t RAMP_DONE_TICK_COUNT = 100;
@@ -138,7 +139,8 @@ static void put_back(struct passo_channel *channel, const struct progress *progr
 
 bool passo_advance_profile_counts(const struct passo_channel *channel)
 {
-	return channel->motion.state == PASSO_STATE_RUN && channel->timescale.enable;
+	return channel->motion.state == PASSO_STATE_RUN && channel->timescale.enable
+	    && !channel->encoders.follow;
 }
 
 uint64_t passo_advance_profile_quiet(
@@ -184,14 +186,27 @@ uint64_t passo_advance_channel_quiet(const struct passo_channel *channel,
 	return passo_advance_slots_empty(channel) ? clocks : 0u;
 }
 
-void passo_advance_surroundings_skip(struct passo_channel *channel, uint64_t clocks)
+static void skip_outputs(struct passo_channel *channel, uint64_t clocks, uint32_t substeps)
 {
+	const struct passo_outputs_skipped skipped = {
+	    .running = channel->motion.running,
+	    .velocity = passo_channel_registers_value(channel, PASSO_CHANNEL_VELOCITY),
+	    .rate = channel->timescale.rate,
+	    .substeps = substeps,
+	    .pwm_step = channel->output_registers.settings.pwm_step,
+	};
+
+	passo_outputs_skip(&channel->outputs, &skipped, clocks);
+}
+
+void passo_advance_surroundings_skip(struct passo_channel *channel, uint64_t clocks, uint32_t substeps)
+{
+
 	passo_positions_skip(&channel->positions, clocks);
 	passo_inputs_skip(&channel->inputs, clocks);
 	if (channel->has_outputs)
-		passo_outputs_skip(&channel->outputs, clocks);
-	if (channel->encoders.present)
-		passo_positions_skip(&channel->encoders.positions, clocks);
+		skip_outputs(channel, clocks, substeps);
+	passo_encoders_skip(channel, clocks);
 	if (channel->trackers.present)
 		passo_trackers_skip(channel, clocks);
 }
@@ -215,10 +230,12 @@ void passo_advance_profile_skip(struct passo_channel *channel, uint64_t clocks)
 
 void passo_advance_channel_skip(struct passo_channel *channel, uint64_t clocks)
 {
+	const uint32_t before = channel->line.substep_number;
+
 	for (unsigned i = 0; i < channel->axes; i++)
 		passo_axis_skip(&channel->axis[i], clocks);
-	passo_advance_surroundings_skip(channel, clocks);
 	passo_advance_profile_skip(channel, clocks);
+	passo_advance_surroundings_skip(channel, clocks, channel->line.substep_number - before);
 }
 
 /* Whether the velocity is that of all ticks that are left of the ramp. */

@@ -118,7 +118,8 @@ static bool motion_settled(const struct passo_channel *channel, const struct pas
 	case PASSO_STATE_PREPARE:
 		return !motion->running && !channel->ramp.ready;
 	case PASSO_STATE_ARMED:
-		return !motion->running && (inputs->wait_sync || waits) && !motion->begin_profile;
+		return !motion->running && (inputs->wait_sync || waits || passo_encoders_await_index(channel))
+		    && !motion->begin_profile;
 	case PASSO_STATE_STOPPED:
 		return !motion->running;
 	case PASSO_STATE_RUN:
@@ -140,18 +141,23 @@ static bool rest_settled(const struct passo_channel *channel)
 	return channel->occupied_before == (occupied ? 7u : 0u) && channel->at_rest == at_rest;
 }
 
-/* Outputs change with each substep and each PWM period: a motion that uses them is not skipped. */
-static bool outputs_settled(const struct passo_channel *channel, const struct passo_bus *bus)
+/* A profile that runs is skipped within its ticks, and only if no output depends on it. */
+static uint64_t outputs_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs)
 {
-	const struct passo_channel_wires wires = {.stopped = passo_channel_stopped(channel)};
+	const struct passo_output_registers *registers = &channel->output_registers;
+	const struct passo_channel_wires wires = {
+	    .stopped = passo_channel_stopped(channel), .running_next = channel->motion.running};
 	struct passo_outputs_wires outputs;
 
 	if (!channel->has_outputs)
-		return true;
-	if (channel->output_registers.write_levels || channel->output_registers.write_power
-	    || channel->output_registers.write_pulse || channel->output_registers.write_distance)
-		return false;
-	outputs = passo_channel_outputs(channel, bus, &wires);
+		return UINT64_MAX;
+	if (registers->write_levels || registers->write_power || registers->write_pulse
+	    || registers->write_distance)
+		return 0;
+	outputs = passo_channel_outputs(channel, inputs->bus, &wires);
+	if (passo_advance_profile_counts(channel)
+	    && !passo_outputs_ignore(&channel->outputs, &outputs, 1u << inputs->parameters->tick_log2))
+		return 0;
 	return passo_outputs_steady(&channel->outputs, &outputs);
 }
 
@@ -161,14 +167,15 @@ uint64_t passo_advance_surroundings_quiet(
 	const struct passo_line_unit *line = &channel->line;
 	const bool moving = channel->motion.state == PASSO_STATE_RUN;
 
-	if (!motion_settled(channel, inputs) || !rest_settled(channel)
-	    || !outputs_settled(channel, inputs->bus) || !commands_settled(channel) || line->load_start
-	    || line->load_start_q || line->underrun
+	if (!motion_settled(channel, inputs) || !rest_settled(channel) || !commands_settled(channel)
+	    || line->load_start || line->load_start_q || line->underrun
 	    || !ramps_settled(&channel->ramp_queue, inputs->parameters)
-	    || !lines_settled(channel, inputs->parameters) || !passo_encoders_quiet(channel, inputs))
+	    || !lines_settled(channel, inputs->parameters))
 		return 0;
 	uint64_t clocks = passo_advance_least(
 	    passo_inputs_quiet(channel, inputs), passo_positions_quiet(&channel->positions));
 	clocks = passo_advance_least(clocks, passo_trackers_quiet(channel, inputs));
+	clocks = passo_advance_least(clocks, passo_encoders_quiet(channel, inputs));
+	clocks = passo_advance_least(clocks, outputs_quiet(channel, inputs));
 	return passo_advance_least(clocks, timescale_quiet(channel, moving, clocks_to_slew));
 }

@@ -120,7 +120,8 @@ static bool skip(struct run *run, uint64_t limit)
 			clocks = passo_advance_least(clocks, passo_advance_axis_quiet(channel, i));
 	if (clocks < PASSO_ADVANCE_PIPELINE)
 		return false;
-	uint64_t skipped = passo_advance_skip_ticks(channel, run->inputs, clocks);
+	/* outputs see the velocity of each tick */
+	uint64_t skipped = channel->has_outputs ? 0u : passo_advance_skip_ticks(channel, run->inputs, clocks);
 	if (skipped == 0u) {
 		clocks = passo_advance_least(clocks, passo_advance_ramp_quiet(&channel->ramp));
 		skipped = passo_advance_profile_quiet(channel, run->inputs->parameters, clocks);
@@ -141,6 +142,7 @@ uint64_t passo_advance_run(
 	struct run run = {
 	    .channel = channel, .inputs = inputs, .tick_last = (1u << inputs->parameters->tick_log2) - 1u};
 	const bool watched = is_watched(channel);
+	const uint32_t before = channel->line.substep_number;
 
 	for (unsigned i = 0; i < channel->axes; i++) {
 		run.idle[i] = passo_advance_axis_quiet(channel, i) == UINT64_MAX;
@@ -161,6 +163,6 @@ uint64_t passo_advance_run(
 	}
 	for (unsigned i = 0; i < channel->axes; i++)
 		catch_up(&run, i);
-	passo_advance_surroundings_skip(channel, run.clocks);
+	passo_advance_surroundings_skip(channel, run.clocks, channel->line.substep_number - before);
 	return run.clocks;
 }

@@ -3,6 +3,8 @@
  */
 #include "passo_core_outputs.h"
 
+#include <string.h>
+
 enum { TWICE_DEPTH = 2 * PASSO_CHANGES_DEPTH };
 
 static void drop(struct passo_changes *changes)
@@ -41,4 +43,14 @@ void passo_changes_clock(struct passo_changes *changes, bool flush, uint16_t lag
 	changes->now++;
 	if (flush)
 		drop(changes);
+}
+
+bool passo_changes_steady(const struct passo_changes *changes, bool flush, uint16_t lag)
+{
+	const struct passo_change *next = &changes->changes[changes->read_place % PASSO_CHANGES_DEPTH];
+
+	return changes->empty && !changes->hit && !changes->valid && !changes->overflow && !changes->full
+	    && changes->read_place == changes->write_place && (!flush || changes->read_place == 0u)
+	    && memcmp(&changes->data, next, sizeof *next) == 0
+	    && changes->due == (uint16_t)(changes->now + lag + 2u);
 }

@@ -3,6 +3,8 @@
  */
 #include "passo_core_encoder.h"
 
+#include "passo_advance.h"
+
 static bool sampled(const struct passo_encoder_filter *filter)
 {
 	return (filter->sync & 2u) != 0u;
@@ -72,16 +74,38 @@ void passo_encoder_clock(struct passo_encoder *encoder, const struct passo_encod
 	filter_clock(&encoder->index, wires->index, wires->filter);
 }
 
-static bool filter_quiet(const struct passo_encoder_filter *filter, bool pin)
+static uint64_t filter_quiet(const struct passo_encoder_filter *filter, bool pin, uint8_t length)
 {
-	return filter->sync == (pin ? 3u : 0u) && filter->level == pin && filter->count == 0u;
+	if (filter->sync != (pin ? 3u : 0u))
+		return 0;
+	if (filter->level == pin)
+		return filter->count == 0u ? UINT64_MAX : 0u;
+	return filter->count < length ? (uint64_t)(length - filter->count) : 0u;
 }
 
-bool passo_encoder_quiet(const struct passo_encoder *encoder, const struct passo_encoder_wires *wires)
+uint64_t passo_encoder_quiet(const struct passo_encoder *encoder, const struct passo_encoder_wires *wires)
 {
-	return filter_quiet(&encoder->a, wires->a) && filter_quiet(&encoder->b, wires->b)
-	    && filter_quiet(&encoder->index, wires->index) && encoder->a_q == wires->a
-	    && encoder->b_q == wires->b && encoder->active_q == active(encoder, wires)
-	    && encoder->count_down == ((wires->a == wires->b) != wires->inverted) && !encoder->count_made
-	    && !encoder->slipped && !encoder->index_event && !wires->clear;
+	const bool a = encoder->a.level, b = encoder->b.level;
+	uint64_t clocks;
+
+	if (encoder->a_q != a || encoder->b_q != b || encoder->active_q != active(encoder, wires)
+	    || encoder->count_down != ((a == b) != wires->inverted) || encoder->count_made || encoder->slipped
+	    || encoder->index_event || wires->clear)
+		return 0;
+	clocks = passo_advance_least(filter_quiet(&encoder->a, wires->a, wires->filter),
+	    filter_quiet(&encoder->b, wires->b, wires->filter));
+	return passo_advance_least(clocks, filter_quiet(&encoder->index, wires->index, wires->filter));
+}
+
+static void filter_skip(struct passo_encoder_filter *filter, uint64_t clocks)
+{
+	if (sampled(filter) != filter->level)
+		filter->count = (uint8_t)(filter->count + clocks);
+}
+
+void passo_encoder_skip(struct passo_encoder *encoder, uint64_t clocks)
+{
+	filter_skip(&encoder->a, clocks);
+	filter_skip(&encoder->b, clocks);
+	filter_skip(&encoder->index, clocks);
 }

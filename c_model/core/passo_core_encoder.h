@@ -31,8 +31,9 @@ void passo_encoder_reset(struct passo_encoder *encoder);
 /* Synchronous reset in the clock just simulated; `before` is the state before that clock. */
 void passo_encoder_restart(struct passo_encoder *encoder, const struct passo_encoder *before);
 void passo_encoder_clock(struct passo_encoder *encoder, const struct passo_encoder_wires *wires);
-/* Whether the state is constant until a pin or a setting changes. */
-bool passo_encoder_quiet(const struct passo_encoder *encoder, const struct passo_encoder_wires *wires);
+/* Clocks in which only filters count, until a pin or a setting changes; and skipping them. */
+uint64_t passo_encoder_quiet(const struct passo_encoder *encoder, const struct passo_encoder_wires *wires);
+void passo_encoder_skip(struct passo_encoder *encoder, uint64_t clocks);
 
 struct passo_following {
 	int64_t change, error; /* s18.16 */
@@ -83,5 +84,10 @@ struct passo_follower_wires {
 void passo_follower_reset(struct passo_follower *follower);
 bool passo_follower_advance(const struct passo_follower *follower, const struct passo_follower_wires *wires);
 void passo_follower_clock(struct passo_follower *follower, const struct passo_follower_wires *wires);
+/* Clocks without an enabled one, until the next count; and skipping them. */
+uint64_t passo_follower_quiet(
+    const struct passo_follower *follower, const struct passo_follower_wires *wires);
+void passo_follower_skip(
+    struct passo_follower *follower, const struct passo_follower_wires *wires, uint64_t clocks);
 
 #endif

@@ -106,13 +106,25 @@ struct passo_outputs_unit {
 	uint8_t levels; /* the pins */
 };
 
+/* The path in skipped clocks. */
+struct passo_outputs_skipped {
+	bool running;
+	uint32_t velocity, rate, substeps, pwm_step;
+};
+
 struct passo_pwm_wires {
 	bool go, restart, proportional;
 	uint16_t power;
 	uint32_t step, cost;
 };
 
+/* Of a clock with power. */
+uint32_t passo_pwm_cost(bool proportional, uint32_t step, uint32_t cost);
 void passo_pwm_clock(struct passo_pwm *pwm, const struct passo_pwm_wires *wires);
+/* Clocks of a period, with power that is not proportional, in which the pin stays as it is; and skipping
+ * them. */
+uint64_t passo_pwm_quiet(const struct passo_pwm *pwm, const struct passo_pwm_wires *wires);
+void passo_pwm_skip(struct passo_pwm *pwm, uint32_t step, uint64_t clocks);
 
 void passo_power_reset(struct passo_power *power);
 void passo_power_clock(struct passo_power *power, const struct passo_outputs_wires *wires, bool moves);
@@ -120,6 +132,13 @@ void passo_power_clock(struct passo_power *power, const struct passo_outputs_wir
 void passo_changes_reset(struct passo_changes *changes);
 void passo_changes_clock(struct passo_changes *changes, bool flush, uint16_t lag, bool change,
     const struct passo_line_output *word);
+/* Whether none is pending, and only the counters change. */
+bool passo_changes_steady(const struct passo_changes *changes, bool flush, uint16_t lag);
+
+/* Whether the cost is being divided again and again, as it is while the path moves. */
+bool passo_power_divides(const struct passo_power *power);
+/* Skips clocks of that, at one velocity and rate. */
+void passo_power_skip(struct passo_power *power, uint32_t velocity, uint32_t rate, uint64_t clocks);
 
 void passo_raster_reset(struct passo_raster *raster);
 /* Whether a substep takes a value, and the value. */
@@ -128,6 +147,11 @@ uint8_t passo_raster_value(const struct passo_raster *raster);
 uint8_t passo_raster_refusal(const struct passo_raster *raster, bool blocked);
 void passo_raster_clock(struct passo_raster *raster, const struct passo_outputs_wires *wires);
 
+/* Whether no state changes while no substep comes and the bus does nothing. */
+bool passo_raster_steady(const struct passo_raster *raster, bool stopped);
+/* Skips substeps that take no value. */
+void passo_raster_skip(struct passo_raster *raster, uint32_t substeps);
+
 void passo_compare_clock(struct passo_compare *compare, const struct passo_outputs_wires *wires);
 
 void passo_outputs_reset(struct passo_outputs_unit *outputs);
@@ -135,9 +159,14 @@ void passo_outputs_clock(struct passo_outputs_unit *outputs, const struct passo_
 /* Whether no change is pending, one clock late. */
 bool passo_outputs_quiet(const struct passo_outputs_unit *outputs);
 uint32_t passo_outputs_state(const struct passo_outputs_unit *outputs, bool has_raster);
-/* Whether only counters change as long as the inputs stay as they are, and skipping such clocks. */
-bool passo_outputs_steady(const struct passo_outputs_unit *outputs, const struct passo_outputs_wires *wires);
-void passo_outputs_skip(struct passo_outputs_unit *outputs, uint64_t clocks);
+/* Clocks in which no pin changes as long as the inputs stay as they are, and skipping them. */
+uint64_t passo_outputs_steady(
+    const struct passo_outputs_unit *outputs, const struct passo_outputs_wires *wires);
+/* Whether so many substeps of the present line change no output. */
+bool passo_outputs_ignore(
+    const struct passo_outputs_unit *outputs, const struct passo_outputs_wires *wires, uint32_t substeps);
+void passo_outputs_skip(
+    struct passo_outputs_unit *outputs, const struct passo_outputs_skipped *skipped, uint64_t clocks);
 
 /* Whether the word of a register of the outputs names an axis that the core lacks. */
 bool passo_output_registers_object(uint8_t address, uint32_t data, uint8_t axes);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Encoders of a channel, and the follower. See rtl/passo_encoders.v.
  */
+#include "passo_advance.h"
 #include "passo_model.h"
 #include "passo_words.h"
 
@@ -95,10 +96,15 @@ void passo_encoders_wires(const struct passo_channel *channel, struct passo_chan
 	const struct passo_encoders *encoders = &channel->encoders;
 	const bool follow = encoders->follow;
 
-	wires->may_begin = !(follow && encoders->wait_index) || followed(channel)->index_event;
+	wires->may_begin = !passo_encoders_await_index(channel) || followed(channel)->index_event;
 	wires->follows = follow && !wires->drain;
 	wires->too_far = encoders->stop_hard && wires->occupied;
 	wires->lags = encoders->stop_soft && wires->occupied;
+}
+
+bool passo_encoders_await_index(const struct passo_channel *channel)
+{
+	return channel->encoders.follow && channel->encoders.wait_index;
 }
 
 bool passo_encoders_wait(const struct passo_channel *channel)
@@ -193,34 +199,55 @@ void passo_encoders_clock(struct passo_channel *channel, const struct passo_chan
 	passo_encoder_registers_clock(channel, inputs->bus, wires);
 }
 
-bool passo_encoders_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs)
+/* Of the follower in quiet time: in RUN it follows; before, it is reset on each clock. */
+static struct passo_follower_wires quiet_wires(const struct passo_channel *channel)
+{
+	const bool runs = channel->motion.state == PASSO_STATE_RUN;
+	const struct passo_channel_wires wires = {.follows = channel->encoders.follow, .counting = runs};
+
+	return follower_wires(channel, &wires);
+}
+
+uint64_t passo_encoders_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs)
 {
 	const struct passo_encoders *encoders = &channel->encoders;
+	const struct passo_follower_wires follower = quiet_wires(channel);
 	bool soft = encoders->follower.lost;
 	bool hard = false;
 
 	if (!encoders->present)
-		return true;
-	/* a motion that follows an encoder, or is about to, is not skipped */
+		return UINT64_MAX;
 	if (encoders->writes || encoders->written != (uint8_t)inputs->bus->address
-	    || encoders->positions.snapshot_waits || encoders->positions.latch_waits
-	    || (encoders->follow && passo_channel_occupied(channel)))
-		return false;
+	    || encoders->positions.snapshot_waits || encoders->positions.latch_waits)
+		return 0;
+	uint64_t clocks = passo_follower_quiet(&encoders->follower, &follower);
 	for (unsigned i = 0; i < channel->axes; i++) {
 		const struct passo_encoder_axis *axis = &encoders->axis[i];
 		const struct passo_encoder_wires pins = encoder_wires(channel, inputs, i);
 		const struct passo_following_wires following = {
 		    .step_made = channel->axis[i].step_made, .ratio = axis->ratio, .limit = axis->limit};
 
-		if (!passo_encoder_quiet(&axis->encoder, &pins)
-		    || !passo_following_quiet(&axis->following, &following) || axis->index_event_q)
-			return false;
+		if (!passo_following_quiet(&axis->following, &following) || axis->index_event_q)
+			return 0;
+		clocks = passo_advance_least(clocks, passo_encoder_quiet(&axis->encoder, &pins));
 		soft = soft || (axis->following.exceeded && axis->stops_soft);
 		hard = hard || (axis->following.exceeded && axis->stops_hard);
 	}
 	/* either stops a motion in the next clock */
 	if ((soft || hard) && passo_channel_occupied(channel))
-		return false;
-	return encoders->stop_soft == soft && encoders->stop_hard == hard && !encoders->follower.lost
-	    && !encoders->follower.behind;
+		return 0;
+	return encoders->stop_soft == soft && encoders->stop_hard == hard ? clocks : 0u;
+}
+
+void passo_encoders_skip(struct passo_channel *channel, uint64_t clocks)
+{
+	struct passo_encoders *encoders = &channel->encoders;
+	const struct passo_follower_wires follower = quiet_wires(channel);
+
+	if (!encoders->present)
+		return;
+	passo_follower_skip(&encoders->follower, &follower, clocks);
+	passo_positions_skip(&encoders->positions, clocks);
+	for (unsigned i = 0; i < PASSO_AXES_MAX; i++)
+		passo_encoder_skip(&encoders->axis[i].encoder, clocks);
 }

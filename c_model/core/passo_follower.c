@@ -38,3 +38,27 @@ void passo_follower_clock(struct passo_follower *follower, const struct passo_fo
 		follower->credit = sum >> 32 != 0u;
 	}
 }
+
+uint64_t passo_follower_quiet(const struct passo_follower *follower, const struct passo_follower_wires *wires)
+{
+	const int32_t owed = follower->owed;
+
+	if (wires->count_made || wires->slipped || follower->change != 0 || follower->lost
+	    || follower->due != (owed > 0) || follower->behind != (owed >= 2 * (1 << wires->scale))
+	    || owed >= OWED_MAX || owed < -OWED_MAX)
+		return 0;
+	if (!wires->following)
+		return owed == 0 && follower->sum == 0u && follower->credit ? UINT64_MAX : 0u;
+	if (!wires->enable)
+		return UINT64_MAX;
+	if (follower->credit)
+		return follower->due ? 0u : UINT64_MAX;
+	return wires->limit == 0u ? UINT64_MAX : (UINT32_MAX - follower->sum) / wires->limit;
+}
+
+void passo_follower_skip(
+    struct passo_follower *follower, const struct passo_follower_wires *wires, uint64_t clocks)
+{
+	if (wires->following && wires->enable && !follower->credit)
+		follower->sum += wires->limit * (uint32_t)clocks;
+}

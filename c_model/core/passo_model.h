@@ -589,10 +589,14 @@ void passo_encoder_registers_clock(
 uint32_t passo_encoder_registers_value(const struct passo_channel *channel, uint8_t address);
 /* Levels of the indexes as the setups have them, synchronized but not filtered, a bit per axis. */
 uint8_t passo_encoders_index(const struct passo_channel *channel);
+/* Whether an ARMED motion begins with an index. */
+bool passo_encoders_await_index(const struct passo_channel *channel);
 /* Whether the profile follows and nothing is owed to it: nothing moves. */
 bool passo_encoders_wait(const struct passo_channel *channel);
-/* Whether nothing changes in the encoders until their pins or the axes do. */
-bool passo_encoders_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs);
+/* Clocks in which only filters count in the encoders, until their pins or the axes change; and skipping them.
+ */
+uint64_t passo_encoders_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs);
+void passo_encoders_skip(struct passo_channel *channel, uint64_t clocks);
 
 void passo_trackers_reset(struct passo_trackers *trackers, bool present);
 /* Synchronous reset, which keeps what the host has written; `before` is the state before the clock. */

@@ -50,3 +50,21 @@ void passo_power_clock(struct passo_power *power, const struct passo_outputs_wir
 	}
 	power->stale = wires->write_power || (power->stale && !begins);
 }
+
+bool passo_power_divides(const struct passo_power *power)
+{
+	return !power->stale && power->count <= LAST;
+}
+
+void passo_power_skip(struct passo_power *power, uint32_t velocity, uint32_t rate, uint64_t clocks)
+{
+	const unsigned count = power->count;
+	const uint64_t to_begin = count == 0u ? 0u : LAST + 1u - count;
+
+	power->count = (uint8_t)((count + clocks) % (LAST + 1u));
+	if (clocks <= to_begin)
+		return;
+	const uint32_t cost = quotient(power->scaled, velocity, rate);
+	power->cost = clocks > to_begin + LAST + 1u ? cost : power->next_cost;
+	power->next_cost = cost;
+}

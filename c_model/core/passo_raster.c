@@ -35,13 +35,17 @@ uint8_t passo_raster_refusal(const struct passo_raster *raster, bool blocked)
 	return raster->full ? PASSO_VERDICT_QUEUE_FULL : PASSO_VERDICT_OK;
 }
 
+static uint16_t free_places(const struct passo_raster *raster)
+{
+	return (uint16_t)(((raster->read_word ^ PASSO_RASTER_DEPTH) - raster->write_end) % TWICE_DEPTH);
+}
+
 static void clock_writing(struct passo_raster *raster, const struct passo_raster_bus *bus)
 {
 	const uint16_t write_word = raster->write_word;
 
 	raster->full = raster->room == raster->checked;
-	raster->room =
-	    (uint16_t)(((raster->read_word ^ PASSO_RASTER_DEPTH) - raster->write_end) % TWICE_DEPTH);
+	raster->room = free_places(raster);
 	if (bus->frame && bus->commit)
 		raster->write_end = (uint16_t)((write_word + raster->checked) % TWICE_DEPTH);
 	if (bus->push && bus->write) {
@@ -80,4 +84,20 @@ void passo_raster_clock(struct passo_raster *raster, const struct passo_outputs_
 		raster->left = (raster->left - 1u) & PITCH_BITS;
 	if (wires->stopped)
 		drop(raster);
+}
+
+bool passo_raster_steady(const struct passo_raster *raster, bool stopped)
+{
+	if (stopped && (raster->write_word | raster->write_end | raster->read_word | raster->index) != 0u)
+		return false;
+	return !raster->missed && !(stopped && (raster->available || raster->first))
+	    && raster->word == raster->words[raster->read_word % PASSO_RASTER_DEPTH]
+	    && (stopped || raster->available == (raster->read_word != raster->write_word))
+	    && raster->full == (raster->room == raster->checked) && raster->room == free_places(raster)
+	    && raster->due == (raster->left == 1u);
+}
+
+void passo_raster_skip(struct passo_raster *raster, uint32_t substeps)
+{
+	raster->left = (raster->left - substeps) & PITCH_BITS;
 }
