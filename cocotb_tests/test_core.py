@@ -23,10 +23,8 @@ from cocotb_tests.helpers.runner import (
 MOST_CHANNELS = {"CHANNELS": 8, "AXES": 1, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 8, "RAMP_QUEUE_LOG2": 8}
 
 # Icarus Verilog is up to ten times slower: long tests run only on Verilator, Icarus gets few random moves of
-# one channel, and one of the modules below; `make icarus` runs all, `make verify` a thousand
-# more histories.
+# one channel; `make icarus` runs all, `make verify` a thousand more histories.
 verilator_only = pytest.mark.parametrize("simulator", ["verilator"])
-ON_BOTH = "core_motion"
 
 MODULES = {
     "core_motion": ONE_CHANNEL,  # every step on its clock, from the first clock of a motion to the last
@@ -48,8 +46,7 @@ MODULES = {
 
 @pytest.mark.parametrize("module", MODULES)
 def test_core(simulator: str, module: str) -> None:
-    if module != ON_BOTH:
-        skip_icarus(simulator)
+    skip_icarus(simulator)
     run(f"cocotb_tests.{module}", TOP, MODULES[module], simulator)
 
 

@@ -165,10 +165,11 @@ class Core(Host):
         if record.judge is None:
             return
         *lines, record.unread = (record.unread + record.log.read()).split("\n")
-        for line in lines:
-            assert "x" not in line.lower(), f"X at a pin: {dict(zip(COLUMNS, line.split(), strict=True))}"
-        numbers = [int(number) for line in lines for number in line.split()]
-        rows = np.array(numbers, dtype=np.uint64).reshape(-1, len(COLUMNS))
+        text = " ".join(lines)
+        if "x" in text.lower():
+            line = next(line for line in lines if "x" in line.lower())
+            raise AssertionError(f"X at a pin: {dict(zip(COLUMNS, line.split(), strict=True))}")
+        rows = np.fromstring(text, dtype=np.uint64, sep=" ").reshape(-1, len(COLUMNS))
         record.judge.follow(rows, self.clock)
         rows = rows[rows[:, 0] > self._first]
         self._rows.append(rows)
