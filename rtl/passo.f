@@ -9,6 +9,10 @@ rtl/passo_axis_registers.v
 rtl/passo_axis_settings.v
 rtl/passo_changes.v
 rtl/passo_channel.v
+rtl/passo_channel_control.v
+rtl/passo_channel_drives.v
+rtl/passo_channel_lines.v
+rtl/passo_channel_path.v
 rtl/passo_channel_registers.v
 rtl/passo_compare.v
 rtl/passo_core.v
