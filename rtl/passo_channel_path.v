@@ -123,9 +123,9 @@ module passo_channel_path #(
   wire [16:0] rate;
   wire [31:0] velocity;
   wire        substep;
-  wire [ 3:0] ramp_refusal;
+  wire [ 3:0] control_refusal;
   wire [31:0] control_read_data;
-  wire        ramp_incomplete;
+  wire        control_incomplete;
 
   // lines
   wire        select_line_queue;
@@ -134,14 +134,14 @@ module passo_channel_path #(
   wire        line_ended;
   wire        line_underrun;
   wire        outputs_quiet;
-  wire [ 3:0] line_refusal;
+  wire [ 3:0] lines_refusal;
   wire [31:0] lines_read_data;
-  wire        line_incomplete;
+  wire        lines_incomplete;
 
   assign path_runs  = moves_path && rate != 17'd0;
-  assign refusal    = line_refusal | ramp_refusal;
+  assign refusal    = lines_refusal | control_refusal;
   assign read_data  = control_read_data | lines_read_data;
-  assign incomplete = line_incomplete | ramp_incomplete;
+  assign incomplete = lines_incomplete | control_incomplete;
 
   passo_motion u_motion (
     .clk             (clk),
@@ -212,9 +212,9 @@ module passo_channel_path #(
     .bus_msb          (bus_msb),
     .needs_quiet      (needs_quiet),
     .tables_wanted    (tables_wanted),
-    .refusal          (ramp_refusal),
+    .refusal          (control_refusal),
     .read_data        (control_read_data),
-    .incomplete       (ramp_incomplete),
+    .incomplete       (control_incomplete),
     .busy             (busy),
     .select_line_queue(select_line_queue),
     .select_axis      (select_axis),
@@ -293,9 +293,9 @@ module passo_channel_path #(
     .bus_msb          (bus_msb),
     .select_line_queue(select_line_queue),
     .bad_value        (bad_value),
-    .refusal          (line_refusal),
+    .refusal          (lines_refusal),
     .read_data        (lines_read_data),
-    .incomplete       (line_incomplete),
+    .incomplete       (lines_incomplete),
     .line_room        (line_room),
     .prepare          (prepare),
     .stopped          (stopped),

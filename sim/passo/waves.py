@@ -124,7 +124,7 @@ def _traces(folder: Path, parameters: Parameters, axes: Mapping[int, int]) -> It
     yield from group("host", f"@{BITS}", *top, *names(f"{CORE}.u_link.verdict[3:0]", "verdict"))
     for number, count in axes.items():
         title = f"channel {number}: " if set(axes) != {0} else ""
-        channel = f"{CORE}.g_channel[{number}].u_channel"
+        channel = f"{CORE}.u_channels.g_channel[{number}].u_channel"
         path = f"{channel}.u_path"
         bit = "" if running == 1 else f"({running - 1 - number})"
         moving = f"{bit}TOP.running[{running - 1}:0]"
