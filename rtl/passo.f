@@ -9,7 +9,12 @@ rtl/passo_axis_registers.v
 rtl/passo_axis_settings.v
 rtl/passo_changes.v
 rtl/passo_channel.v
+rtl/passo_channel_control.v
+rtl/passo_channel_drives.v
+rtl/passo_channel_lines.v
+rtl/passo_channel_path.v
 rtl/passo_channel_registers.v
+rtl/passo_channels.v
 rtl/passo_compare.v
 rtl/passo_core.v
 rtl/passo_crc.v
@@ -32,6 +37,7 @@ rtl/passo_line_queue.v
 rtl/passo_lines.v
 rtl/passo_link.v
 rtl/passo_link_bus.v
+rtl/passo_link_frame.v
 rtl/passo_link_schedule.v
 rtl/passo_link_states.v
 rtl/passo_machine.v
@@ -39,6 +45,7 @@ rtl/passo_memory.v
 rtl/passo_motion.v
 rtl/passo_output_registers.v
 rtl/passo_outputs.v
+rtl/passo_parameters.v
 rtl/passo_path.v
 rtl/passo_payload.v
 rtl/passo_positions.v

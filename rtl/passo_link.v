@@ -13,8 +13,8 @@
 // verdict until one clock after the last word; meanwhile the targets hold `bus_busy`. A frame may begin meanwhile; it
 // is ignored if its header is complete before the replay ends, which happens if the master omits trailing words.
 //
-// Blocks: passo_link_states sequences the frame and times each word, passo_header decodes the header, passo_link_bus
-// generates the bus accesses, passo_verdict checks the frame.
+// Blocks: passo_link_states sequences the frame and times each word, passo_link_frame stores the words, checks them and
+// generates the bus accesses and the reply.
 // Latency: payload word to bus_check 40 clocks, crc word to ack 77 clocks, to the first word of a read 91 clocks.
 // Address and data are stable on the bus from one clock before their strobe (of a check: two clocks), data to one
 // clock after it, the address of a read from 16 clocks before. A target answers one clock after a strobe with claim
@@ -55,7 +55,6 @@ module passo_link (
 );
 
   `include "passo_registers.vh"
-  `include "passo_link_schedule.vh"
 
   wire in_header;
   wire in_payload;
@@ -76,21 +75,16 @@ module passo_link (
   wire       act;
   wire       half_rotated;
 
-  wire       header_is_read;
-  wire       header_is_empty;
-  wire       header_ok;
-  wire [3:0] header_verdict;
+  wire header_is_read;
+  wire header_is_empty;
 
   wire [3:0] verdict;
   wire       verdict_ok;
   wire       executes;
   wire       objection;
 
-  wire       is_read;
-  wire [5:0] index;  // payload word
-  wire       first_word;
-  wire       all_words;
-  wire       sequence_known;
+  wire is_read;
+  wire all_words;
 
   passo_link_states u_states (
     .clk            (clk),
@@ -124,151 +118,58 @@ module passo_link (
     .half_rotated   (half_rotated)
   );
 
-  passo_link_bus u_bus (
-    .clk           (clk),
-    .rst           (rst),
-    .in_header     (in_header),
-    .in_payload    (in_payload),
-    .in_crc        (in_crc),
-    .in_ack        (in_ack),
-    .in_replay     (in_replay),
-    .in_read       (in_read),
-    .count         (count),
-    .rests         (rests),
-    .load_ends     (load_ends),
-    .act           (act),
-    .frame_end     (frame_end),
-    .verdict_ok    (verdict_ok),
-    .data          (bus_data),
-    .is_read       (is_read),
-    .index         (index),
-    .first_word    (first_word),
-    .all_words     (all_words),
-    .sequence_known(sequence_known),
-    .last_sequence (last_sequence),
-    .bus_frame     (bus_frame),
-    .bus_commit    (bus_commit),
-    .bus_check     (bus_check),
-    .bus_write     (bus_write),
-    .bus_read      (bus_read),
-    .bus_push      (bus_push),
-    .bus_address   (bus_address)
+  passo_link_frame u_frame (
+    .clk            (clk),
+    .rst            (rst),
+    .frame_start    (frame_start),
+    .frame_end      (frame_end),
+    .half_valid     (half_valid),
+    .half_low       (half_low),
+    .half           (half),
+    .reply_word     (reply_word),
+    .in_header      (in_header),
+    .in_payload     (in_payload),
+    .in_crc         (in_crc),
+    .in_ack         (in_ack),
+    .in_replay      (in_replay),
+    .in_read        (in_read),
+    .in_sum         (in_sum),
+    .in_count       (in_count),
+    .frame_breaks   (frame_breaks),
+    .count          (count),
+    .rotate         (rotate),
+    .rests          (rests),
+    .begin_load     (begin_load),
+    .load           (load),
+    .load_ends      (load_ends),
+    .act            (act),
+    .half_rotated   (half_rotated),
+    .is_read        (is_read),
+    .all_words      (all_words),
+    .header_is_read (header_is_read),
+    .header_is_empty(header_is_empty),
+    .verdict        (verdict),
+    .verdict_ok     (verdict_ok),
+    .executes       (executes),
+    .objection      (objection),
+    .last_sequence  (last_sequence),
+    .bus_frame      (bus_frame),
+    .bus_commit     (bus_commit),
+    .bus_check      (bus_check),
+    .bus_write      (bus_write),
+    .bus_read       (bus_read),
+    .bus_push       (bus_push),
+    .bus_address    (bus_address),
+    .bus_data       (bus_data),
+    .bus_msb        (bus_msb),
+    .bus_one_hot    (bus_one_hot),
+    .bus_claim      (bus_claim),
+    .bus_refusal    (bus_refusal),
+    .bus_read_data  (bus_read_data),
+    .bus_counters   (bus_counters),
+    .bus_incomplete (bus_incomplete),
+    .bus_busy       (bus_busy)
   );
-
-  passo_header u_header (
-    .clk           (clk),
-    .hold          (rotate),
-    .data          (bus_data[31:12]),
-    .sequence_known(sequence_known),
-    .last_sequence (last_sequence),
-    .is_read       (header_is_read),
-    .is_empty      (header_is_empty),
-    .ok            (header_ok),
-    .verdict       (header_verdict)
-  );
-
-  // Behind the payload the buffer holds the header, one scratch word (also the CRC), and two words of refusal
-  // counters, each of which reads as 0 until one of its counters has counted.
-  reg        put;
-  wire       uses_counters = in_read | in_count;
-  reg        verdict_high;  // verdict >= READ_ONLY
-  reg  [1:0] counted;
-  reg        counters_high;
-  wire [1:0] counter = verdict[1:0] - VERDICT_BAD_CRC[1:0];
-  wire [1:0] place = uses_counters ? {1'b1, counters_high} : {1'b0, in_crc};
-  wire       counter_bit;
-
-  passo_payload u_payload (
-    .clk        (clk),
-    .store      (half_valid),
-    .store_word (in_payload ? {1'b0, index} : {6'b100000, ~(in_header | in_replay)}),
-    .store_low  (half_low),
-    .half       (half),
-    .put        (put),
-    .put_word   ({6'b100001, counters_high}),
-    .put_low    (act),
-    .load       (load),
-    .load_word  (in_payload || in_replay ? {1'b0, index} : {5'b10000, place}),
-    .load_low   (~begin_load & ~count[0]),
-    .load_zero  (uses_counters && !counted[counters_high]),
-    .rotate     (rotate),
-    .bit_index  (count[4:0]),
-    .count      (in_count),
-    .counter    (counter),
-    .data       (bus_data),
-    .msb        (bus_msb),
-    .one_hot    (bus_one_hot),
-    .counter_bit(counter_bit)
-  );
-
-  reg answered;  // high in COUNT_LOADED of a read
-  reg replies;  // the reply rotates, too
-
-  // CRC of the request; that of a read's header continues as the CRC of the reply
-  wire crc_top;
-  wire reply_top;
-
-  passo_crc u_crc (
-    .clk    (clk),
-    .restart(load & in_header),
-    .shift  (rotate),
-    .rotate (in_crc | in_sum),
-    .data   (in_read ? reply_top : bus_data[31]),
-    .top    (crc_top)
-  );
-
-  passo_reply u_reply (
-    .clk        (clk),
-    .rst        (rst),
-    .take       (frame_start || answered),
-    .data       (bus_read_data),
-    .shift      (rotate && replies),
-    .bit_index  (count[4:0]),
-    .acknowledge(in_ack),
-    .header_11  (bus_data[11]),
-    .header_27  (bus_data[27]),
-    .verdict    (verdict),
-    .crc_next   (in_sum),
-    .crc_top    (crc_top),
-    .counters   (in_read & bus_counters),
-    .counter_bit(counter_bit),
-    .word       (reply_word),
-    .top        (reply_top)
-  );
-
-  passo_verdict u_verdict (
-    .clk           (clk),
-    .rst           (rst),
-    .header        (in_header & act),
-    .header_ok     (header_ok),
-    .header_verdict(header_verdict),
-    .in_header     (in_header),
-    .crc_differs   (in_crc & rotate & (crc_top != bus_data[31])),
-    .conclude      (in_crc & act),
-    .read_answered (answered & first_word),
-    .bus_check     (bus_check),
-    .bus_claim     (bus_claim),
-    .bus_refusal   (bus_refusal),
-    .bus_incomplete(bus_incomplete),
-    .bus_busy      (bus_busy),
-    .verdict       (verdict),
-    .verdict_ok    (verdict_ok),
-    .executes      (executes),
-    .objection     (objection)
-  );
-
-  always @(posedge clk) begin
-    answered      <= in_read && load_ends && !frame_breaks;
-    replies       <= in_ack | in_read | in_sum;
-    put           <= in_count && half_rotated;
-    verdict_high  <= verdict >= VERDICT_READ_ONLY;
-    counters_high <= in_ack | in_count ? verdict_high : bus_address[0];
-    if (in_count && act) counted[counters_high] <= 1'b1;
-    if (rst) begin
-      answered <= 1'b0;
-      counted  <= 2'b00;
-    end
-  end
 
 `ifdef FORMAL
   `include "passo_link_formal.vh"

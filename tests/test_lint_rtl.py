@@ -30,13 +30,13 @@ class Fault:
 
 
 FAULTS = {
-    "name_is_not_declared": Fault("passo_link.v", "  wire crc_top;\n", "", ALL, top="passo_link"),
-    "port_is_not_there": Fault("passo_link.v", ".restart(", ".begin_again(", ALL, top="passo_link"),
+    "name_is_not_declared": Fault("passo_link_frame.v", "  wire crc_top;\n", "", ALL, top="passo_link"),
+    "port_is_not_there": Fault("passo_link_frame.v", ".restart(", ".begin_again(", ALL, top="passo_link"),
     "module_is_not_there": Fault(
-        "passo_link.v", "passo_crc u_crc", "passo_crc32 u_crc", ALL, top="passo_link"
+        "passo_link_frame.v", "passo_crc u_crc", "passo_crc32 u_crc", ALL, top="passo_link"
     ),
     "name_is_used_before_its_declaration": Fault(
-        "passo_link.v", "  passo_crc u_crc", "  assign late = 1'b0;\n  wire late;\n  passo_crc u_crc",
+        "passo_link_frame.v", "  passo_crc u_crc", "  assign late = 1'b0;\n  wire late;\n  passo_crc u_crc",
         ("slang",),
     ),
     "time_scale_is_missing": Fault(

@@ -96,7 +96,8 @@ def test_several_channels(tmp_path: Path) -> None:
     out, fst = waves(tmp_path, text=TWO_CHANNELS)
     view = (out / "waves.gtkw").read_text()
     for channel in (0, 1):
-        assert f"g_channel[{channel}].u_channel.state" in view and f"-channel {channel}: axis 0" in view
+        assert f"g_channel[{channel}].u_channel.u_path.state" in view
+        assert f"-channel {channel}: axis 0" in view
     assert "-channel 1: axis 1" in view
     assert set(signals(view)) <= fst.names
 

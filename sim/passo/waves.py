@@ -124,20 +124,21 @@ def _traces(folder: Path, parameters: Parameters, axes: Mapping[int, int]) -> It
     yield from group("host", f"@{BITS}", *top, *names(f"{CORE}.u_link.verdict[3:0]", "verdict"))
     for number, count in axes.items():
         title = f"channel {number}: " if set(axes) != {0} else ""
-        channel = f"{CORE}.g_channel[{number}].u_channel"
+        channel = f"{CORE}.u_channels.g_channel[{number}].u_channel"
+        path = f"{channel}.u_path"
         bit = "" if running == 1 else f"({running - 1 - number})"
         moving = f"{bit}TOP.running[{running - 1}:0]"
         yield from group(
-            f"{title}motion", *names(f"{channel}.state[2:0]", "state"),
-            *names(f"{channel}.cause[{CHANNEL_STATE_CAUSE_BITS - 1}:0]", "cause"),
-            f"@{BITS}", moving, f"@{DECIMAL}", f"{channel}.line_room[{lines}:0]",
-            f"{channel}.ramp_room[{ramps}:0]", f"{channel}.rate[16:0]",
+            f"{title}motion", *names(f"{path}.state[2:0]", "state"),
+            *names(f"{path}.cause[{CHANNEL_STATE_CAUSE_BITS - 1}:0]", "cause"),
+            f"@{BITS}", moving, f"@{DECIMAL}", f"{path}.line_room[{lines}:0]",
+            f"{path}.ramp_room[{ramps}:0]", f"{path}.rate[16:0]",
         )  # fmt: skip
-        curve = [f"@{CURVE}", f"{channel}.velocity[31:0]", "@20000", "-", "-", "-"]
-        substep = [f"@{BITS}", f"{channel}.substep"]
+        curve = [f"@{CURVE}", f"{path}.velocity[31:0]", "@20000", "-", "-", "-"]
+        substep = [f"@{BITS}", f"{path}.substep"]
         yield from group(f"{title}velocity (2^-32 substeps per clock)", *curve, *substep)
         for axis in range(count):
-            own = f"{channel}.u_axes.g_axis[{axis}]"
+            own = f"{channel}.u_drives.u_axes.g_axis[{axis}]"
             place = pins - 1 - (number * parameters.axes + axis)
             bits = [f"({place})TOP.{name}[{pins - 1}:0]" for name in ("step", "dir", "enable")]
             states = [f"{own}.u_axis.{name}" for name in ("setup", "high", "low", "hold", "idle")]

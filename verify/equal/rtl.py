@@ -38,21 +38,29 @@ class Rtl:
 PORT = re.compile(r"^\s*(input|output)\s+(?:wire|reg)\s+(?:\[[^]]*\]\s*)?(\w+)", re.M)
 
 
-def _cut_ports(top: str, folder: Path, cut: tuple[str, ...]) -> tuple[set[str], set[str]]:
-    """Ports ``instance.port`` of the modules that are cut out: what they are given, and what they give.
+INSTANCE = re.compile(r"(?:\bbegin : (\w+)\s+)?\b(passo_\w+)\b\s*(?:#\([^;]*?\n\s*\)\s*)?(\w+)\s*\(")
 
-    An instance in a generate block has the name ``block.instance``.
-    """
-    text = re.sub(r"//.*", "", (folder / f"{top}.v").read_text(encoding="utf-8"))
+
+def _instances(module: str, within: str, folder: Path) -> list[str]:
+    """The instances of a module, also below; one in a generate block has the name ``block.instance``."""
+    text = re.sub(r"//.*", "", (folder / f"{within}.v").read_text(encoding="utf-8"))
+    found = []
+    for block, inner, name in INSTANCE.findall(text):
+        instance = f"{block}.{name}" if block else name
+        if inner == module:
+            found.append(instance)
+        elif (folder / f"{inner}.v").exists():
+            found += [f"{instance}.{below}" for below in _instances(module, inner, folder)]
+    return found
+
+
+def _cut_ports(top: str, folder: Path, cut: tuple[str, ...]) -> tuple[set[str], set[str]]:
+    """Ports ``instance.port`` of the modules that are cut out: what they are given, and what they give."""
     given: set[str] = set()
     gives: set[str] = set()
     for module in cut:
         ports = PORT.findall((folder / f"{module}.v").read_text(encoding="utf-8"))
-        block = r"(?:\bbegin : (\w+)\s+)?"
-        instances = [
-            ".".join(filter(None, found))
-            for found in re.findall(rf"{block}\b{module}\s*(?:#\([^;]*?\n\s*\)\s*)?(\w+)\s*\(", text)
-        ]
+        instances = _instances(module, top, folder)
         if not instances or not ports:
             raise Failure(f"{top} has no {module} to cut out")
         for instance in instances:

@@ -33,7 +33,9 @@ from verify.soak.program import build
 BUILD = paths.build / "wiring"
 # What these consist of is instances of other modules, and little else.
 MODULES = (
-    *("passo_spi_top", "passo_core", "passo_channel", "passo_profile", "passo_lines", "passo_axes"),
+    *("passo_spi_top", "passo_core", "passo_channels", "passo_channel", "passo_channel_path"),
+    *("passo_channel_control", "passo_channel_lines", "passo_channel_drives"),
+    *("passo_profile", "passo_lines", "passo_axes"),
     "passo_encoders",
 )
 JOBS = 2

@@ -16,6 +16,11 @@
 (* keep *) wire f_in_answer_due;
 (* keep *) wire f_in_answer_came;
 (* keep *) wire f_in_objects;
+(* keep *) wire f_sequence_known;
+(* keep *) wire f_answered;
+(* keep *) wire [1:0] f_counter;
+(* keep *) wire f_in_header_ok;
+(* keep *) wire [3:0] f_in_header_verdict;
 (* keep *) wire f_in_header_is_known;
 (* keep *) wire f_in_header_fits;
 (* keep *) wire f_in_header_repeats;
@@ -175,11 +180,11 @@ always @(posedge clk) begin
   f_load_q    <= load & ~rst;
   f_bit_index_q   <= count[4:0];
   f_count_q   <= in_count;
-  f_counter_q <= counter;
+  f_counter_q <= f_counter;
   if (f_begun && rotate) begin
     rotates_whole :
     assert (!load && !f_load_q && count[4:0] == (f_first_rotation ? 5'd0 : f_bit_index_q + 5'd1) && (f_first_rotation || f_bit_index_q != 5'd31));
-    if (!f_first_rotation || in_count) counts_as_told : assert (in_count == f_count_q && counter == f_counter_q);
+    if (!f_first_rotation || in_count) counts_as_told : assert (in_count == f_count_q && f_counter == f_counter_q);
     if (f_first_rotation && in_count) counts_after_31 : assert (f_bit_index_q == 5'd31);
   end
 end
@@ -213,7 +218,7 @@ always @(posedge clk)
     if (in_payload && !bus_frame) assert (f_frame_told);
     if (bus_check) assert (f_frame_told && f_since_strobe == 3'd7);
     assert (f_gap <= F_GAP);
-    assert (sequence_known == f_any);
+    assert (f_sequence_known == f_any);
     if (f_any) assert (last_sequence == f_last);
     assert (!f_frame_waits || in_replay || in_count || in_header);
     assert (!f_frame_waits || f_selected && f_words == 9'd0 && f_checks == 9'd0 && !f_objection);
@@ -233,7 +238,7 @@ always @(posedge clk)
       if (in_sum) assert (f_begin_rotate || (count >= COUNT_ROTATE && count <= COUNT_ACT));
       if (in_read) assert (count >= COUNT_READ);
     end
-    if (answered) assert (in_read && count == COUNT_LOADED && !f_begin_read);
+    assert (!f_answered || (in_read && count == COUNT_LOADED && !f_begin_read));
     if (in_read && load_ends) assert (count == COUNT_LOADED - 7'd1 && !f_begin_read);
     if ((f_receives || in_ack) && f_busy) assert (!bus_check && !f_in_answer_due && !f_in_answer_came);
     // no word ends while one is fetched for the reply
@@ -257,8 +262,8 @@ always @(posedge clk)
         assert (f_in_header_repeats == f_repeats);
       end
       if (f_rotates && count > COUNT_ROTATE) begin
-        assert (header_ok == (header_verdict == VERDICT_OK));
-        if (header_ok) assert (header_is_read ? f_length != 8'd0 && f_length <= 8'd60 : f_header_fits);
+        assert (f_in_header_ok == (f_in_header_verdict == VERDICT_OK));
+        assert (!f_in_header_ok || (header_is_read ? f_length != 8'd0 && f_length <= 8'd60 : f_header_fits));
       end
     end
     if (f_words == 9'd0 && f_upper && f_selected && (in_header || f_frame_waits))

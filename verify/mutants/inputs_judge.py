@@ -16,7 +16,8 @@ from verify.mutants.engine_judge import Check
 MODULES = (
     *("passo_machine", "passo_estop", "passo_watchdog", "passo_inputs", "passo_input", "passo_limits"),
     *("passo_trigger", "passo_positions", "passo_core", "passo_channel", "passo_axis_registers"),
-    "passo_lines",
+    *("passo_lines", "passo_channels", "passo_channel_path", "passo_channel_control"),
+    "passo_channel_drives",
 )
 LEVELS = ("limit_low", "limit_high", "home", "alarm")
 UNIT = 1 << 16  # clocks of the watchdog

@@ -11,7 +11,10 @@ from tests.helpers.closed_form import HALF, ONE, Line, Ramp, substep_clocks
 from verify.mutants.engine_judge import Check
 from verify.mutants.motions_judge import TIME, Motions
 
-MODULES = ("passo_line", "passo_lines", "passo_dda", "passo_line_queue", "passo_memory", "passo_channel")
+MODULES = (
+    *("passo_line", "passo_lines", "passo_dda", "passo_line_queue", "passo_memory", "passo_channel"),
+    *("passo_channel_path", "passo_channel_lines"),
+)
 SIZES = (9, 12, 15, 18, 21, 24, 27, 30)  # bits of M
 COUNT = 1 << 15  # substeps at full speed, and some more
 

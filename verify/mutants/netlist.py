@@ -70,6 +70,7 @@ PLAIN = Core(
             "passo_header",
             "passo_link",
             "passo_link_bus",
+            "passo_link_frame",
             "passo_link_schedule",
             "passo_link_states",
         ),
@@ -82,7 +83,8 @@ PLAIN = Core(
             "passo_registers",
             "passo_core",
         ),
-        *("passo_channel", "passo_channel_registers", "passo_admission", "passo_motion", "passo_timescale"),
+        *("passo_channels", "passo_channel", "passo_channel_path", "passo_channel_control"),
+        *("passo_channel_registers", "passo_admission", "passo_motion", "passo_timescale"),
         *("passo_profile", "passo_path", "passo_interpolate", "passo_ramp", "passo_ramp_numbers"),
         *("passo_ramp_queue", "passo_ramp_schedule", "passo_ramp_strobes", "passo_ramp_tick"),
         *("passo_line", "passo_line_queue", "passo_dda", "passo_memory"),
@@ -96,7 +98,10 @@ TRACKED = Core(
     ("passo_tracker", "passo_trackers", "passo_tracker_join"),
 )
 # The wiring of a core is not the same with its parts.
-BOTH = ("passo_core", "passo_channel", "passo_channel_registers", "passo_axis_registers", "passo_spi_top")
+BOTH = (
+    *("passo_core", "passo_channels", "passo_channel", "passo_channel_path", "passo_channel_control"),
+    *("passo_channel_registers", "passo_axis_registers", "passo_spi_top"),
+)
 MACHINED = Core(
     "machine",
     MACHINE,

@@ -16,7 +16,8 @@ from verify.mutants.motions_judge import Motions
 
 MODULES = (
     *("passo_outputs", "passo_output_registers", "passo_raster", "passo_changes", "passo_power"),
-    *("passo_pwm", "passo_core", "passo_channel"),
+    *("passo_pwm", "passo_core", "passo_channels", "passo_channel", "passo_channel_lines"),
+    "passo_channel_control",
 )
 FULL = 1 << 24  # of the phase of a period
 VALUES = (6, 6, 1020)  # of a raster line, by round; the last fills the queue

@@ -28,7 +28,9 @@ MODULES = (
         "passo_axes",
     ),
     *("passo_output_registers", "passo_encoder_registers", "passo_inputs", "passo_machine", "passo_header"),
-    *("passo_core", "passo_channel", "passo_encoders", "passo_outputs", "passo_verdict", "passo_link_bus"),
+    *("passo_channel", "passo_channel_path", "passo_channel_control", "passo_channel_lines"),
+    *("passo_channel_drives", "passo_channels", "passo_core", "passo_encoders", "passo_outputs"),
+    *("passo_verdict", "passo_link_bus", "passo_link_frame"),
     *("passo_tables", "passo_encoder_axis", "passo_positions", "passo_admission"),
 )
 # Registers with a field that does not take each sum of its bits.

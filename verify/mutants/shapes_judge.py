@@ -19,6 +19,7 @@ MODULES = (
     *("passo_tables", "passo_interpolate", "passo_profile", "passo_path", "passo_core", "passo_positions"),
     *("passo_ramp", "passo_ramp_numbers", "passo_ramp_queue", "passo_ramp_schedule", "passo_ramp_strobes"),
     *("passo_ramp_tick", "passo_memory", "passo_channel", "passo_line_queue", "passo_motion"),
+    *("passo_channels", "passo_channel_path", "passo_channel_control"),
 )
 
 

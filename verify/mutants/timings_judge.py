@@ -15,7 +15,10 @@ from verify.mutants.engine_judge import Check
 from verify.mutants.motions_judge import TIME, Motions
 
 GREATEST = (7, 60, 400, 2000, 65535)  # timing of each round
-MODULES = ("passo_axes", "passo_axis", "passo_axis_settings", "passo_axis_registers", "passo_channel")
+MODULES = (
+    *("passo_axes", "passo_axis", "passo_axis_settings", "passo_axis_registers"),
+    *("passo_channel", "passo_channel_control", "passo_channel_drives"),
+)
 
 
 class Timings(Motions):
