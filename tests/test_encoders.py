@@ -102,7 +102,8 @@ class Thread(EncoderSession):
     def follow(self, scale: int) -> None:
         """Counts of 2^scale enabled clocks."""
         word = r.ChannelFollowWord(follow=1, wait_index=1, source=1, scale=scale).pack()
-        self.try_to(self.link.write, self.channel.base + r.CHANNEL_FOLLOW, word, 1 << 30)
+        limit = self.rng.choice((1 << 30, 1 << 25))  # with the lower one it stays behind
+        self.try_to(self.link.write, self.channel.base + r.CHANNEL_FOLLOW, word, limit)
 
     def begin(self) -> None:
         """The index."""

@@ -23,8 +23,7 @@ uint64_t passo_advance_axis_quiet(const struct passo_channel *channel, unsigned 
 /* Whether no substep is in flight between path and DDA. */
 bool passo_advance_slots_empty(const struct passo_channel *channel);
 
-/* Whether a profile is running and its clock enable is on in each clock; that of a motion that follows is
- * not. */
+/* Whether a profile is running with its clock enable always on, so not by an encoder. */
 bool passo_advance_profile_counts(const struct passo_channel *channel);
 /* Clocks to the next event of a running profile, within its tick; and skipping them. */
 uint64_t passo_advance_profile_quiet(

@@ -121,8 +121,7 @@ struct passo_pwm_wires {
 /* Of a clock with power. */
 uint32_t passo_pwm_cost(bool proportional, uint32_t step, uint32_t cost);
 void passo_pwm_clock(struct passo_pwm *pwm, const struct passo_pwm_wires *wires);
-/* Clocks of a period, with power that is not proportional, in which the pin stays as it is; and skipping
- * them. */
+/* Clocks until the pin may change, 0 with proportional power; and skipping them. */
 uint64_t passo_pwm_quiet(const struct passo_pwm *pwm, const struct passo_pwm_wires *wires);
 void passo_pwm_skip(struct passo_pwm *pwm, uint32_t step, uint64_t clocks);
 
@@ -162,7 +161,7 @@ uint32_t passo_outputs_state(const struct passo_outputs_unit *outputs, bool has_
 /* Clocks in which no pin changes as long as the inputs stay as they are, and skipping them. */
 uint64_t passo_outputs_steady(
     const struct passo_outputs_unit *outputs, const struct passo_outputs_wires *wires);
-/* Whether so many substeps of the present line change no output. */
+/* Whether `substeps` of the present line change no output. */
 bool passo_outputs_ignore(
     const struct passo_outputs_unit *outputs, const struct passo_outputs_wires *wires, uint32_t substeps);
 void passo_outputs_skip(

@@ -218,7 +218,8 @@ uint64_t passo_encoders_quiet(const struct passo_channel *channel, const struct 
 	if (!encoders->present)
 		return UINT64_MAX;
 	if (encoders->writes || encoders->written != (uint8_t)inputs->bus->address
-	    || encoders->positions.snapshot_waits || encoders->positions.latch_waits)
+	    || encoders->positions.snapshot_waits || encoders->positions.latch_waits
+	    || (encoders->follower.behind && !encoders->was_behind))
 		return 0;
 	uint64_t clocks = passo_follower_quiet(&encoders->follower, &follower);
 	for (unsigned i = 0; i < channel->axes; i++) {

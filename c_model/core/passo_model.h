@@ -593,8 +593,7 @@ uint8_t passo_encoders_index(const struct passo_channel *channel);
 bool passo_encoders_await_index(const struct passo_channel *channel);
 /* Whether the profile follows and nothing is owed to it: nothing moves. */
 bool passo_encoders_wait(const struct passo_channel *channel);
-/* Clocks in which only filters count in the encoders, until their pins or the axes change; and skipping them.
- */
+/* Clocks in which only filters and sums count, until a pin or an axis changes; and skipping them. */
 uint64_t passo_encoders_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs);
 void passo_encoders_skip(struct passo_channel *channel, uint64_t clocks);
 
