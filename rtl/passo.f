@@ -68,6 +68,7 @@ rtl/passo_tables.v
 rtl/passo_timescale.v
 rtl/passo_tracker.v
 rtl/passo_tracker_join.v
+rtl/passo_tracker_program.v
 rtl/passo_trackers.v
 rtl/passo_trigger.v
 rtl/passo_verdict.v

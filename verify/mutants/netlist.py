@@ -95,7 +95,7 @@ PLAIN = Core(
 TRACKED = Core(
     "tracked",
     TRACKER_SETS[0],
-    ("passo_tracker", "passo_trackers", "passo_tracker_join"),
+    ("passo_tracker", "passo_tracker_program", "passo_trackers", "passo_tracker_join"),
 )
 # The wiring of a core is not the same with its parts.
 BOTH = (

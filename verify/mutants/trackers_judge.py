@@ -21,7 +21,7 @@ from verify.mutants.motions_judge import FRAME, TIME, Steps, all_substeps
 from verify.mutants.trackers_due import HALF, LATE, STEP, Due, Hand, either_way, joined, nearest
 from verify.mutants.trackers_host import Host, phases
 
-MODULES = ("passo_tracker", "passo_trackers", "passo_tracker_join")
+MODULES = ("passo_tracker", "passo_tracker_program", "passo_trackers", "passo_tracker_join")
 FAR = HALF - 5000  # nearly half of all positions away: a target beyond is behind
 ABOVE = 3  # ticks above the fastest motion
 DROPPED = 7  # steps of a tracker, at most, by a hard stop
