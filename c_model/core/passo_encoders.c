@@ -211,7 +211,6 @@ static struct passo_follower_wires quiet_wires(const struct passo_channel *chann
 uint64_t passo_encoders_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs)
 {
 	const struct passo_encoders *encoders = &channel->encoders;
-	const struct passo_follower_wires follower = quiet_wires(channel);
 	bool soft = encoders->follower.lost;
 	bool hard = false;
 
@@ -221,6 +220,7 @@ uint64_t passo_encoders_quiet(const struct passo_channel *channel, const struct 
 	    || encoders->positions.snapshot_waits || encoders->positions.latch_waits
 	    || (encoders->follower.behind && !encoders->was_behind))
 		return 0;
+	const struct passo_follower_wires follower = quiet_wires(channel);
 	uint64_t clocks = passo_follower_quiet(&encoders->follower, &follower);
 	for (unsigned i = 0; i < channel->axes; i++) {
 		const struct passo_encoder_axis *axis = &encoders->axis[i];
@@ -243,12 +243,12 @@ uint64_t passo_encoders_quiet(const struct passo_channel *channel, const struct 
 void passo_encoders_skip(struct passo_channel *channel, uint64_t clocks)
 {
 	struct passo_encoders *encoders = &channel->encoders;
-	const struct passo_follower_wires follower = quiet_wires(channel);
 
 	if (!encoders->present)
 		return;
+	const struct passo_follower_wires follower = quiet_wires(channel);
 	passo_follower_skip(&encoders->follower, &follower, clocks);
 	passo_positions_skip(&encoders->positions, clocks);
-	for (unsigned i = 0; i < PASSO_AXES_MAX; i++)
+	for (unsigned i = 0; i < channel->axes; i++)
 		passo_encoder_skip(&encoders->axis[i].encoder, clocks);
 }
