@@ -44,17 +44,29 @@ def serve(path: Path, *options: str) -> Iterator[subprocess.Popen[str]]:
             server.kill()
 
 
-@pytest.mark.parametrize("options", [["--engine", "model"], ["--engine", "both", "--axes", "4"]])
-def test_a_host_and_the_edges(tmp_path: Path, options: list[str]) -> None:
+def test_a_host_and_the_edges(tmp_path: Path) -> None:
     """The command ends with its host and leaves no socket; the edges are in the file."""
     path, edges = tmp_path / "core", tmp_path / "edges.npy"
-    with serve(path, "--once", "--edges", str(edges), *options) as server:
+    with serve(path, "--once", "--edges", str(edges)) as server:
         done = subprocess.run([example(), f"unix:{path}"], capture_output=True, text=True, timeout=300)
         assert (done.stdout, server.wait(60)) == (ARRIVED, 0)
     assert not path.exists()
     events = np.load(edges)
     assert events.dtype == EVENT
     assert int(np.abs(moves_of(events, 1)).sum()) == 2 * 3200
+
+
+def test_a_host_of_both_engines(tmp_path: Path) -> None:
+    """A core with more axes than its host uses."""
+    path, edges, text = tmp_path / "core", tmp_path / "edges.npy", tmp_path / "machine.toml"
+    text.write_text(MACHINE.replace("speed = 10\n", "speed = 100\n").replace('switches = ["home"]\n', ""))
+    options = ("--engine", "both", "--axes", "4", "--clock", "8000000", "--edges", str(edges))
+    with serve(path, "--once", *options) as server:
+        with Machine.from_file(text, f"unix:{path}") as machine:
+            assert machine.move(X=20).run().end["X"] == 20
+            assert machine.move(X=0).run().end["X"] == 0
+        assert server.wait(60) == 0
+    assert int(np.abs(moves_of(np.load(edges), 0)).sum()) == 2 * 1600
 
 
 def test_a_host_that_dies(tmp_path: Path) -> None:
