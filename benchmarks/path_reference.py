@@ -182,7 +182,8 @@ class _Stage:
         return tuple(np.concatenate(column) for column in zip(*found, strict=True))
 
     def lone(self, acceleration: np.ndarray, steeper: float) -> tuple[np.ndarray, ...]:
-        """Node of a corner, factors of the squares before, there and behind, and the bound of their sum.
+        """Nodes where the rounding of a corner begins, at the corner, and where it ends; factors of the
+        squares there, and the bound of their sum.
 
         With `f` and `g`, what the acceleration along the path leaves of that of an axis before and behind the
         corner, its velocity changes by `2 sqrt(d) (sqrt(f) + sqrt(g))` at most while it stays within `d`.
@@ -193,27 +194,29 @@ class _Stage:
         which = np.flatnonzero(path.alone & (path.arc > TINY))
         node = np.searchsorted(self.place, path.corner[which] - TINY)
         size = np.linalg.norm(path.turn[which], axis=1)
+        first = np.searchsorted(self.place, path.corner[which] - path.before[which] - TINY)
+        last = np.searchsorted(self.place, path.corner[which] + path.behind[which] - TINY)
         for axis, limit in enumerate(acceleration):
             turn = self.turn[which, axis]
             sign = np.sign(turn) * steeper
-            before = sign * self.unit[which, axis] / (2 * self.size[node - 1])
-            behind = sign * self.unit[which + 1, axis] / (2 * self.size[node])
+            before = sign * self.unit[which, axis] / (2 * (self.place[node] - self.place[first]))
+            behind = sign * self.unit[which + 1, axis] / (2 * (self.place[last] - self.place[node]))
             needed = np.abs(turn) * size / (4 * path.deviation) if path.deviation else np.abs(turn)
             for one, other in ((3, 1), (1, 3)):
                 row = (-one * before, needed + one * before - other * behind, other * behind)
-                found.append((node, *row, np.full(len(node), 4 * limit)))
+                found.append((first, node, last, *row, np.full(len(node), 4 * limit)))
             within = np.abs(turn) / path.arc[which]
             row = (-before, within + before - behind, behind)
-            found.append((node, *row, np.full(len(node), 2 * limit)))
+            found.append((first, node, last, *row, np.full(len(node), 2 * limit)))
         return tuple(np.concatenate(column) for column in zip(*found, strict=True))
 
     def solve(self, acceleration: np.ndarray, steeper: float) -> np.ndarray:
         """The largest squares."""
         cell, low, high, bound = self.rows(acceleration, steeper)
-        node, before, there, behind, limit = self.lone(acceleration, steeper)
+        first, node, last, before, there, behind, limit = self.lone(acceleration, steeper)
         own = len(cell) + np.arange(len(node))
         row = np.concatenate([np.arange(len(cell)), np.arange(len(cell)), own, own, own])
-        column = np.concatenate([cell, cell + 1, node - 1, node, node + 1])
+        column = np.concatenate([cell, cell + 1, first, node, last])
         value, bound = np.concatenate([low, high, before, there, behind]), np.concatenate([bound, limit])
         scale = np.full(len(bound), TINY)
         np.maximum.at(scale, row, np.abs(value))

@@ -51,6 +51,20 @@ def test_two_lines_at_a_right_angle() -> None:
     assert at_rest - 2 * arc / 1000 < motion.seconds < at_rest - 0.8 * 2 * speed / 1000
 
 
+def test_slivers_beside_corners() -> None:
+    """Lines of other feeds within a rounding change little: its slope on a side is that of all of it."""
+    plain: list[Line] = []
+    split: list[Line] = []
+    angle, x, y = math.radians(20), 0.0, 0.0
+    for number in range(30):
+        along = angle + (math.pi / 2 if number % 2 else 0)
+        for part, feed in ((0.001, 100), (0.099, 101), (0.001, 100)):
+            x, y = x + part * math.cos(along), y + part * math.sin(along)
+            split.append(((x, y, 0), feed))
+        plain.append(((x, y, 0), 100))
+    assert seconds(split, MACHINE) == pytest.approx(seconds(plain, MACHINE), rel=3e-3)
+
+
 @pytest.mark.parametrize("chords", [40, 360, 4000])
 def test_a_circle_at_a_constant_speed(chords: int) -> None:
     """The centripetal acceleration is all of that of the axes, where the feed does not limit it."""
