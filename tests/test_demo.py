@@ -15,12 +15,12 @@ GCODE = paths.examples / "gcode"
 
 
 def test_a_gantry_is_squared(tmp_path: Path) -> None:
-    """With a picture; a gantry that is not is a problem."""
-    summary = run_gantry(GCODE / "gantry.toml", tmp_path)
+    """With a picture; a gantry that is not is a problem. The demonstration itself has both engines."""
+    summary = run_gantry(GCODE / "gantry.toml", tmp_path, "model")
     assert summary["ok"] and (tmp_path / "motion.png").stat().st_size > 10_000
     wrong = tmp_path / "wrong.toml"
     wrong.write_text((GCODE / "gantry.toml").read_text().replace("racking = 4", "racking = 2"))
-    assert run_gantry(wrong, tmp_path / "wrong")["problems"]
+    assert run_gantry(wrong, tmp_path / "wrong", "model")["problems"]
 
 
 def test_an_engraving(tmp_path: Path) -> None:

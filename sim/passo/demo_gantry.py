@@ -49,20 +49,20 @@ def gantry_core(machine: MachineFile) -> Parameters:
     return replace(parameters_for(len(machine.motors)), inputs=1)
 
 
-def run_gantry(machine_path: Path, folder: Path) -> dict[str, Any]:
-    """Home it, write picture and summary to a folder; return the summary."""
+def run_gantry(machine_path: Path, folder: Path, on: str = "both") -> dict[str, Any]:
+    """Home it on an engine, write picture and summary to a folder; return the summary."""
     machine, began = read_machine(machine_path), time.monotonic()
     empty_folder(folder, ("summary.json", "motion.png"))
     scale = float(machine.settings.axes[AXIS].steps_per_mm)
     motors, said = machine.motors_of(AXIS), []
-    with open_engine("both", gantry_core(machine), machine.clock_hz) as pair:
+    with open_engine(on, gantry_core(machine), machine.clock_hz) as made:
         start = round(machine.ends[AXIS].travel * scale) // 2
-        attach(pair, machine, {motors[1]: round(SKEW * scale)})
-        engine = Recorder(pair)
+        attach(made, machine, {motors[1]: round(SKEW * scale)})
+        engine = Recorder(made)
         grbl = Grbl(engine, machine, said.append)
         grbl.type(b"$H\n")
         ended = grbl.wait(lambda: grbl.answers > 0 and grbl.is_idle, PATIENCE)
-        matched = pair.matched_edges
+        matched = getattr(made, "matched_edges", None)
     events = np.concatenate(engine.events)
     seconds, places = events["clock"] / machine.clock_hz, []
     for motor in motors:
