@@ -5,6 +5,7 @@ is too fast or too steep, they end where the lines end, and there always is a ne
 import math
 import random
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -39,18 +40,20 @@ class Made:
 
     def at(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Places, speeds and accelerations at some times."""
-        share = np.linspace(0, 1, SAMPLES)
-        table = (
-            np.array([*tables()[self.shape][:256], 65536]) / 65536 if self.shape else np.linspace(0, 1, 257)
-        )
-        times = np.linspace(0, 1, 257)
-        area = np.concatenate(([0], np.cumsum(table[1:] + table[:-1]) / 512))
+        share, way, risen, steep = course(self.shape)
         change = self.last - self.first
-        steep = np.gradient(table, times) if self.shape else np.ones(257)
-        done = self.first * share + change * np.interp(share, times, area)
-        places = self.begin + self.seconds * done
-        speeds = self.first + change * np.interp(share, times, table)
-        return places, speeds, change / max(self.seconds, 1e-12) * np.interp(share, times, steep)
+        places = self.begin + self.seconds * (self.first * share + change * way)
+        return places, self.first + change * risen, change / max(self.seconds, 1e-12) * steep
+
+
+@cache
+def course(shape: int) -> tuple[np.ndarray, ...]:
+    """Shares of the time of a ramp, and there: way, speed and slope, from 0 to 1 in the time of 1."""
+    share, times = np.linspace(0, 1, SAMPLES), np.linspace(0, 1, 257)
+    table = np.array([*tables()[shape][:256], 65536]) / 65536 if shape else times
+    area = np.concatenate(([0], np.cumsum(table[1:] + table[:-1]) / 512))
+    steep = np.gradient(table, times) if shape else np.ones(257)
+    return share, *(np.interp(share, times, values) for values in (area, table, steep))
 
 
 class Host:
@@ -102,14 +105,13 @@ def worst(host: Host, limits: Limits, settings: PathSettings, rests: bool = Fals
         end = ramp.begin + ramp.length
         near = max(ramp.first, ramp.last) * tick * LITTLE + 1.5 / host.scale
 
-        def line_at(place: Any, ends: np.ndarray = ends) -> Any:
-            return np.clip(np.searchsorted(ends, place, "right") - 1, 0, len(ends) - 2)
-
-        first = int(line_at(ramp.begin + near))
-        last = max(first, int(line_at(end - near)))
-        lines = slice(first, last + 1)
         places, speeds, steep = ramp.at()
-        top = np.maximum(limits.top[line_at(places - near)], limits.top[line_at(places + near)])
+        asked = np.concatenate(([ramp.begin + near, end - near], places - near, places + near))
+        found_at = (ends.searchsorted(asked, "right") - 1).clip(0, len(ends) - 2)
+        first = int(found_at[0])
+        last = max(first, int(found_at[1]))
+        lines = slice(first, last + 1)
+        top = limits.top[found_at[2:]].reshape(2, -1).max(axis=0)
         found["speed"] = max(found["speed"], float((speeds / np.sqrt(top)).max()))
         most = float(limits.acceleration[lines].min())
         if ramp.seconds > 3 * tick:
