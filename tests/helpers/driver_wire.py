@@ -20,6 +20,11 @@ Q32 = 1 << 32
 GAP = 3  # clocks between two frames, hardly more than the core needs
 
 
+def _bits(words: np.ndarray) -> np.ndarray:
+    """The lowest eight bits of words, each in a column."""
+    return np.unpackbits(words.astype(np.uint8)[:, None], axis=1, bitorder="little")
+
+
 class Wire:
     """The C model behind SPI; an engine for passo.link."""
 
@@ -82,13 +87,11 @@ class Wire:
         step, dir_ = (
             np.concatenate([[was], events[pin]]) for was, pin in ((self._step, "step"), (self._dir, "dir"))
         )
-        rising, turning = ~step[:-1] & step[1:], dir_[:-1] ^ dir_[1:]
-        for axis in range(8):
-            at = rising >> np.uint64(axis) & np.uint64(1) != 0
-            down = int((events["dir"][at] >> np.uint64(axis) & np.uint64(1)).sum())
-            self.pulses[axis] += at.sum()
-            self.net[axis] += at.sum() - 2 * down
-            self.turns[axis] += (turning >> np.uint64(axis) & np.uint64(1)).sum()
+        rising, down, turning = map(_bits, (~step[:-1] & step[1:], dir_[1:], dir_[:-1] ^ dir_[1:]))
+        pulses = rising.sum(axis=0, dtype=np.int64)
+        self.pulses += pulses
+        self.net += pulses - 2 * (rising & down).sum(axis=0, dtype=np.int64)
+        self.turns += turning.sum(axis=0, dtype=np.int64)
         self._step, self._dir = step[-1], dir_[-1]
         self.enable = int(events["enable"][-1])
 
