@@ -11,6 +11,7 @@ from passo.build import Parameters, model_library, rtl_library
 from passo.failure import Failure
 from passo.native import ffi, load
 from passo.pins import INPUTS, OUTPUTS
+from passo.toolchain import paths
 
 # Pin levels after each clock on which an output pin changes; clock 1 is the first one after reset. A pin has
 # a bit per axis, channel * axes + axis, or per channel.
@@ -199,6 +200,8 @@ def model_engine(parameters: Parameters, clock_hz: int = 100_000_000, every_cloc
     return Engine(model_library(), parameters, clock_hz, every_clock=every_clock)
 
 
-def rtl_engine(parameters: Parameters, clock_hz: int = 100_000_000, waves: bool = False) -> Engine:
-    """The Verilated core."""
-    return Engine(rtl_library(parameters, waves), parameters, clock_hz)
+def rtl_engine(
+    parameters: Parameters, clock_hz: int = 100_000_000, waves: bool = False, rtl: Path = paths.rtl
+) -> Engine:
+    """The Verilated core; `rtl`: a folder with a changed copy of it."""
+    return Engine(rtl_library(parameters, waves, rtl), parameters, clock_hz)

@@ -17,7 +17,7 @@ import sys
 import time
 from collections.abc import Collection, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from passo.build import rtl_library
@@ -27,7 +27,7 @@ from passo.output import write_json
 from passo.toolchain import environment, paths
 
 from verify.equal.rtl import PORT
-from verify.soak.parts import MACHINE, SETS
+from verify.soak.parts import MACHINE, SETS, TRACKER_SETS
 from verify.soak.program import build
 
 BUILD = paths.build / "wiring"
@@ -36,14 +36,16 @@ MODULES = (
     *("passo_spi_top", "passo_core", "passo_channels", "passo_channel", "passo_channel_path"),
     *("passo_channel_control", "passo_channel_lines", "passo_channel_drives"),
     *("passo_profile", "passo_lines", "passo_axes"),
-    "passo_encoders",
+    *("passo_encoders", "passo_trackers"),
 )
 JOBS = 2
 SET = 2  # of two channels, without inputs, encoders and outputs
+TRACKERS = 3  # set of trackers.py: five axes, of which three have a tracker alone, inputs and outputs
 # Kind of history ("": of that set), and how many are played.
-HISTORIES = (("", 20), ("machine", 20), ("pokes", 300))
+HISTORIES = (("", 20), ("machine", 20), ("trackers", 20), ("pokes", 300))
 FEW = (("machine", 10),)  # for some connections
-PATIENCE = 120  # seconds
+LONGEST = 1800  # seconds, of all histories of a kind
+PATIENCE = 4  # times what they take without an inversion
 # Which wire is inverted, as C++ in the Verilog of Verilator.
 NUMBER = r'$c("(getenv(\"PASSO_CUT\") ? atoi(getenv(\"PASSO_CUT\")) : 0)")'
 
@@ -62,16 +64,17 @@ class Player:
 
     kind: str
     command: tuple[str | Path, ...]
+    seconds: float = LONGEST  # at most
 
     def first_seen(self, wire: int) -> str:
         """The history and the clock in which a cut wire is seen; empty: none."""
         variables = {**environment(), "PASSO_CUT": str(wire)}
         try:
             done = subprocess.run(
-                self.command, env=variables, capture_output=True, text=True, timeout=PATIENCE
+                self.command, env=variables, capture_output=True, text=True, timeout=self.seconds
             )
         except subprocess.TimeoutExpired:
-            return f"{self.kind}: no end within {PATIENCE} s"
+            return f"{self.kind}: no end within {self.seconds:.0f} s"
         failed = re.search(r"^failed (\d+) (\d+) ", done.stdout, re.M)
         if (done.returncode == 0) != (failed is None):
             return f"{self.kind}: exit status {done.returncode}"
@@ -153,8 +156,7 @@ def check(seed: int, names: Collection[str] = ()) -> dict[str, str]:
     chosen = [wire for wire in wires if not names or any(_is_of(wire, name) for name in names)]
     seen: dict[str, str] = {}
     with ThreadPoolExecutor(JOBS) as pool:
-        if at := "".join(pool.map(lambda player: player.first_seen(0), players)):
-            raise Failure(f"RTL and model differ without an inversion: {at}")
+        players = list(pool.map(_uncut, players))
         running = {pool.submit(_first_seen, wire.number, players): wire for wire in chosen}
         estimate = Estimate(len(chosen))
         for count, done in enumerate(as_completed(running), 1):
@@ -176,9 +178,21 @@ def _is_of(wire: Wire, name: str) -> bool:
 
 
 def _player(seed: int, kind: str, count: int) -> Player:
+    if kind == "trackers":
+        rtl_library(TRACKER_SETS[TRACKERS], rtl=BUILD / "cut")
+        own = ("--rtl", BUILD / "cut", "--set", str(TRACKERS), "--fast")
+        return Player(kind, (sys.executable, "-m", "verify.soak.trackers", str(seed), "0", str(count), *own))
     library = rtl_library(MACHINE if kind else SETS[SET], rtl=BUILD / "cut")
     more = [f"--{kind}"] if kind else ["--set", str(SET)]
     return Player(kind or "plain", (build(), str(seed), "0", str(count), *more, "--rtl", library))
+
+
+def _uncut(player: Player) -> Player:
+    """The player, with the patience that it needs. Raises Failure if the RTL differs from the model."""
+    began = time.monotonic()
+    if at := player.first_seen(0):
+        raise Failure(f"RTL and model differ without an inversion: {at}")
+    return replace(player, seconds=PATIENCE * (time.monotonic() - began))
 
 
 def _first_seen(wire: int, players: list[Player]) -> str:

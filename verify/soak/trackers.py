@@ -1,21 +1,25 @@
 # SPDX-License-Identifier: MIT
 """Random histories of both hands: paths, and trackers whose targets jump; stops, holds, switches, resets.
 
-    python -m verify.soak.trackers SEED FIRST COUNT [--rtl] [--print]
+    python -m verify.soak.trackers SEED FIRST COUNT [--rtl [FOLDER]] [--set N] [--fast] [--print]
 
 The judge is that of verify/mutants/trackers_judge.py, which sees pins and replies alone. `--rtl`: the
-Verilated core, compared with the model on every clock. Prints "failed NUMBER CLOCK TEXT" and "count NAME
-VALUE".
+Verilated core, of sources or of a changed copy, compared with the model on every clock. `--set`: one of
+TRACKER_SETS, not all by turns. `--fast`: the first failure is the end. Prints "failed NUMBER CLOCK TEXT" and
+"count NAME VALUE".
 """
 
+import argparse
 import random
 import sys
 from collections import Counter
+from pathlib import Path
 
 from passo.build import Parameters
 from passo.engine import model_engine, rtl_engine
 from passo.failure import Failure
 from passo.pair_engine import PairEngine
+from passo.toolchain import paths
 
 from verify.mutants.trackers_judge import KINDS, OF_INPUTS, Trackers
 from verify.soak.parts import TRACKER_SETS
@@ -23,7 +27,7 @@ from verify.soak.parts import TRACKER_SETS
 MOST = 4  # scenarios of a history
 
 
-def play(parameters: Parameters, seed: int, number: int, rtl: bool, shows: bool) -> Counter[str]:
+def play(parameters: Parameters, seed: int, number: int, rtl: Path | None, shows: bool) -> Counter[str]:
     """A history: some scenarios of any kinds, one after the other, on a core that has just begun.
 
     Raises:
@@ -33,7 +37,7 @@ def play(parameters: Parameters, seed: int, number: int, rtl: bool, shows: bool)
     rng = random.Random(f"{seed}/{number}")
     model = model_engine(parameters)
     counts: Counter[str] = Counter()
-    with PairEngine(rtl_engine(parameters), model) if rtl else model as engine:
+    with PairEngine(rtl_engine(parameters, rtl=rtl), model) if rtl else model as engine:
         trackers = Trackers(engine, parameters, rng)
         kinds = [name for name in KINDS if parameters.inputs or name not in OF_INPUTS]
         try:
@@ -51,13 +55,22 @@ def play(parameters: Parameters, seed: int, number: int, rtl: bool, shows: bool)
 
 def main() -> None:
     """Play, and exit with 1 if a history fails."""
-    seed, first, count = map(int, sys.argv[1:4])
+    parser = argparse.ArgumentParser(prog="python -m verify.soak.trackers", description="Paths and trackers.")
+    for name in ("seed", "first", "count"):
+        parser.add_argument(name, type=int)
+    parser.add_argument("sources", nargs="?", help="their hash, by which results are kept")
+    parser.add_argument("--rtl", type=Path, nargs="?", const=paths.rtl)
+    parser.add_argument("--set", type=int, choices=range(len(TRACKER_SETS)))
+    parser.add_argument("--fast", action="store_true")
+    parser.add_argument("--print", action="store_true")
+    asked = parser.parse_args()
+    sets = TRACKER_SETS if asked.set is None else (TRACKER_SETS[asked.set],)
     counts: Counter[str] = Counter()
     failed = 0
-    for number in range(first, first + count):
-        parameters = TRACKER_SETS[number % len(TRACKER_SETS)]
+    for number in range(asked.first, asked.first + asked.count):
+        parameters = sets[number % len(sets)]
         try:
-            counts += play(parameters, seed, number, "--rtl" in sys.argv, "--print" in sys.argv)
+            counts += play(parameters, asked.seed, number, asked.rtl, asked.print)
         except AssertionError as error:
             says, clock = error.args
             print(f"failed {number} {clock} {says.splitlines()[0] if says else 'not as it is known to be'}")
@@ -65,7 +78,9 @@ def main() -> None:
         except Failure as error:
             print(f"failed {number} 0 {error}")
             failed += 1
-    for name, value in {**counts, "histories": count}.items():
+        if failed and asked.fast:
+            break
+    for name, value in {**counts, "histories": asked.count}.items():
         print(f"count {name} {value}")
     sys.exit(bool(failed))
 
