@@ -99,13 +99,18 @@ def markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return "\n".join(f"| {' | '.join(cells)} |" for cells in (header, rule, *rows))
 
 
-def _find(report: dict[str, Any], device: str, channels: int, axes: int) -> Row:
+def _find(report: dict[str, Any], device: str, channels: int, axes: int, parts: Sequence[str] = ()) -> Row:
+    wanted = (device, channels, axes, list(parts))
     (found,) = [
         row
         for row in report["designs"]
-        if (row["device"], row["channels"], row["axes"]) == (device, channels, axes)
+        if (row["device"], row["channels"], row["axes"], row["parts"]) == wanted
     ]
     return found
+
+
+def _of_goal(report: dict[str, Any], goal: Row) -> Row:
+    return _find(report, goal["device"], 1, goal["axes"], goal["parts"])
 
 
 def mhz(value: float | None) -> str:
@@ -118,40 +123,38 @@ def _size(row: Row) -> str:
 
 
 def _goals(report: dict[str, Any]) -> tuple[Sequence[str], list[list[str]]]:
-    header = ("FPGA", "axes", "median MHz", "goal", "lowest MHz", "goal", "size", "goal", "BRAM", "all met")
+    header = ("FPGA", "axes", "blocks", "median MHz", "goal", "lowest MHz", "goal", "size", "goal", "BRAM")
     rows = []
     for goal in report["goals"]:
-        device = DEVICES[goal["device"]]
-        row = _find(report, goal["device"], goal["channels"], goal["axes"])
+        device, row = DEVICES[goal["device"]], _of_goal(report, goal)
         unit = device.family.size_unit
         limits = [("f_max_median", "median_mhz"), ("f_max_minimum", "minimum_mhz")]
         met = row["fits"] and all(row[reached] >= goal[wanted] for reached, wanted in limits)
-        met = met and row["size"] <= goal["size"] and (goal["bram"] is None or row["bram"] <= goal["bram"])
-        limit = "" if goal["bram"] is None else f" of {goal['bram']}"
         rows.append(
             [
                 device.title,
                 str(goal["axes"]),
+                ", ".join(goal["parts"]) or NONE,
                 mhz(row["f_max_median"]) if row["fits"] else "does not fit",
-                str(goal["median_mhz"]),
+                str(goal["median_mhz"] or NONE),
                 mhz(row["f_max_minimum"]),
-                str(goal["minimum_mhz"]),
+                str(goal["minimum_mhz"] or NONE),
                 f"{row['size']:,} {unit}",
                 f"{goal['size']:,} {unit}",
-                f"{row['bram']}{limit}",
-                "yes" if met else "no",
+                str(row["bram"]),
+                "yes" if met and row["size"] <= goal["size"] else "no",
             ]
         )
-    return header, rows
+    return (*header, "all met"), rows
 
 
 def _by_seed(report: dict[str, Any]) -> list[str]:
     """The speeds of the designs with goals, by seed."""
-    rows = [(goal, _find(report, goal["device"], goal["channels"], goal["axes"])) for goal in report["goals"]]
-    return [
-        f"{DEVICES[goal['device']].title}, {goal['axes']} axes: {', '.join(map(mhz, row['f_max'])) or NONE}"
-        for goal, row in rows
-    ]
+    found = []
+    for goal in report["goals"]:
+        what = ", ".join((f"{DEVICES[goal['device']].title}, {goal['axes']} axes", *goal["parts"]))
+        found.append(f"{what}: {', '.join(map(mhz, _of_goal(report, goal)['f_max'])) or NONE}")
+    return found
 
 
 def _sizes(report: dict[str, Any], name: str) -> tuple[Sequence[str], list[list[str]]]:
@@ -160,7 +163,8 @@ def _sizes(report: dict[str, Any], name: str) -> tuple[Sequence[str], list[list[
     header = ("channels x axes", placed, "LUT", "FF", "BRAM", "DSP", "lowest MHz", "median MHz")
     rows = []
     for row in sorted(
-        (row for row in report["designs"] if row["device"] == name), key=lambda r: (r["channels"], r["axes"])
+        (row for row in report["designs"] if row["device"] == name and not row["parts"]),
+        key=lambda row: (row["channels"], row["axes"]),
     ):
         speed = [mhz(row["f_max_minimum"]), mhz(row["f_max_median"])]
         rows.append(

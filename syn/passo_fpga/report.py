@@ -17,7 +17,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, replace
 from itertools import product
 from threading import Lock
-from typing import Any
+from typing import Any, NamedTuple
 
 from passo.console import Estimate, console, stages
 from passo.output import write_json
@@ -43,27 +43,47 @@ SPI = "passo_spi_top"
 BUS_TOPS = ("passo_wishbone", "passo_axi_lite")
 TOP_SIZE = (1, 4)
 
-Key = tuple[str, str, tuple[int, int]]  # device, top, (channels, axes)
+ROUTER = ("inputs", "outputs")
+WHOLE = ("inputs", "encoders", "outputs", "raster", "compare")
+
+
+class Key(NamedTuple):
+    """A core that is measured."""
+
+    device: str
+    top: str
+    size: tuple[int, int]  # channels, axes
+    parts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
 class Goal:
-    """Goal for a device: `size` in its unit, `bram` if limited, and the clocks in MHz over the seeds."""
+    """Goal for a device: `size` in its unit, and the clocks in MHz over the seeds; 0: any that is routed."""
 
     device: str
-    channels: int
     axes: int
     median_mhz: int
     minimum_mhz: int
     size: int
-    bram: int | None = None
+    parts: tuple[str, ...] = ()
+
+    @property
+    def key(self) -> Key:
+        """Of the core."""
+        return Key(self.device, SPI, (1, self.axes), self.parts)
 
 
 GOALS = (
-    Goal("hx8k", 1, 4, 120, 110, 3750, 16),
-    Goal("up5k", 1, 6, 49, 47, 5280),
-    Goal("ecp5-25", 1, 6, 180, 170, 6000),
-    Goal("gw1nr-9c", 1, 6, 100, 90, 8640),
+    Goal("hx8k", 4, 132, 122, 3400),
+    Goal("hx8k", 3, 0, 0, 3650, ("inputs",)),
+    Goal("hx8k", 3, 115, 105, 4500, ROUTER),
+    Goal("hx8k", 3, 105, 95, 5700, WHOLE),
+    Goal("up5k", 6, 49, 47, 5280),
+    Goal("up5k", 3, 42, 40, 4600, ROUTER),
+    Goal("ecp5-25", 6, 190, 180, 6000),
+    Goal("gw1nr-9c", 6, 100, 90, 8640),
+    Goal("gw1nr-9c", 3, 90, 84, 5000, ROUTER),
+    Goal("gw1nr-9c", 3, 0, 0, 8640, WHOLE),
 )
 
 
@@ -84,10 +104,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 2
     if options.parts:
         return _parts(chosen)
-    goals = [(goal.device, SPI, (goal.channels, goal.axes)) for goal in GOALS if goal.device in chosen]
-    others = (
-        [] if options.quick else [*product(chosen, (SPI,), SIZES), *product(chosen, BUS_TOPS, (TOP_SIZE,))]
-    )
+    goals = [goal.key for goal in GOALS if goal.device in chosen]
+    tops = [*product(chosen, (SPI,), SIZES), *product(chosen, BUS_TOPS, (TOP_SIZE,))]
+    others = [] if options.quick else [Key(*each) for each in tops]
     whole = not options.quick and set(chosen) == set(DEVICES)
     try:
         report = measure(
@@ -134,20 +153,20 @@ def _boards(only: str) -> int:
     return 0
 
 
-def core(device: Device, size: tuple[int, int], top: str = SPI) -> Design:
+def core(device: Device, size: tuple[int, int], top: str = SPI, parts: tuple[str, ...] = ()) -> Design:
     """The design of the core alone behind one of its host interfaces, with its ports as pins."""
     channels, axes = size
-    parameters = {"CHANNELS": channels, "AXES": axes, **device.core}
-    suffix = "" if top == SPI else f"-{top.removeprefix('passo_')}"
-    return Design(f"{device.name}-{channels}x{axes}{suffix}", device, top, parameters)
+    parameters = {"CHANNELS": channels, "AXES": axes, **device.core, **{part.upper(): 1 for part in parts}}
+    name = "-".join([device.name, f"{channels}x{axes}", *parts])
+    return Design(name if top == SPI else f"{name}-{top.removeprefix('passo_')}", device, top, parameters)
 
 
 def measure(wanted: Sequence[Key], splits: bool) -> dict[str, Any]:
     """Run what is not cached, in parallel, and collect the figures."""
     tell = stages()
-    devices = list(dict.fromkeys(DEVICES[name] for name, _, _ in wanted))
+    devices = list(dict.fromkeys(DEVICES[key.device] for key in wanted))
     prepare(dict.fromkeys(program for device in devices for program in device.family.programs), tell)
-    designs = {key: core(DEVICES[key[0]], key[2], key[1]) for key in wanted}
+    designs = {key: core(DEVICES[key.device], key.size, key.top, key.parts) for key in wanted}
     named = {device.name for device in devices} if splits else set()
     hierarchical = {name: _hierarchical(name, SPLIT_SIZE) for name in SPLIT_DEVICES if name in named}
     channels = [_hierarchical(CHANNEL_DEVICE, (number, 1)) for number in (1, 2) if CHANNEL_DEVICE in named]
@@ -181,8 +200,10 @@ def measure(wanted: Sequence[Key], splits: bool) -> dict[str, Any]:
         "goal_seeds": list(GOAL_SEEDS),
         "tools": {device.name: versions(device.family.programs) for device in devices},
         "goals": [asdict(goal) for goal in GOALS if DEVICES[goal.device] in devices],
-        "designs": [_row(designs[key], key, placed[key]) for key in designs if key[1] == SPI],
-        "tops": [_row(designs[key], key, placed[key]) for key in designs if key[2] == TOP_SIZE],
+        "designs": [_row(designs[key], key, placed[key]) for key in designs if key.top == SPI],
+        "tops": [
+            _row(designs[key], key, placed[key]) for key in designs if key.size == TOP_SIZE and not key.parts
+        ],
         "split": {name: split(design) for name, design in hierarchical.items()},
         "split_size": list(SPLIT_SIZE),
         "channel_device": CHANNEL_DEVICE,
@@ -196,8 +217,7 @@ def _hierarchical(name: str, size: tuple[int, int]) -> Design:
 
 
 def _seeds(key: Key) -> Sequence[int]:
-    goals = [(goal.device, SPI, (goal.channels, goal.axes)) for goal in GOALS]
-    return GOAL_SEEDS if key in goals else SEEDS
+    return GOAL_SEEDS if key in [goal.key for goal in GOALS] else SEEDS
 
 
 def _counter(total: int) -> Callable[..., str]:
@@ -227,7 +247,7 @@ def _words(placed: Placed) -> str:
 
 
 def _row(design: Design, key: Key, placed: Sequence[Placed]) -> dict[str, Any]:
-    device, top, (channels, axes) = key
+    device, top, (channels, axes), parts = key
     made = cells(design)
     # a seed that nextpnr cannot place or route counts as 0 MHz
     reached = [run.main_clock[0] if run.fits else 0.0 for run in placed]
@@ -237,6 +257,7 @@ def _row(design: Design, key: Key, placed: Sequence[Placed]) -> dict[str, Any]:
         "top": top,
         "channels": channels,
         "axes": axes,
+        "parts": list(parts),
         "fits": median is None or median > 0,
         "size": placed[0].used if placed else made["LUT"],
         "capacity": design.device.capacity,
