@@ -65,14 +65,14 @@ def test_no_promise_is_broken_with_a_machine(program: Path, kind: str, histories
 def test_no_promise_is_broken_with_trackers() -> None:
     """Both hands, on the model and on the Verilated core beside it."""
     check(parts.play_trackers(SEED, 24, JOBS), 24)
-    assert trackers.play(parts.TRACKER_SETS[0], SEED, 0, rtl=True, shows=False)["steps"] > 0
+    assert trackers.play(parts.TRACKER_SETS[0], SEED, 0, paths.rtl, shows=False)["steps"] > 0
 
 
 def test_a_step_of_a_tracker_that_is_not_made_goes_red(monkeypatch: pytest.MonkeyPatch) -> None:
     """As is one that comes in another tick: the judge has another recurrence then."""
     monkeypatch.setattr(trackers_host, "nearest", lambda position: (position + 1) // trackers_due.STEP)
     with pytest.raises(AssertionError, match="step"):
-        trackers.play(parts.TRACKER_SETS[0], SEED, 0, rtl=False, shows=False)
+        trackers.play(parts.TRACKER_SETS[0], SEED, 0, None, shows=False)
 
 
 def test_no_promise_is_broken_through_the_driver(program: Path) -> None:
