@@ -27,6 +27,11 @@ def moves_of(events: np.ndarray, bit: int) -> np.ndarray:
     return rises * (1 - 2 * back)
 
 
+def bits_of(words: np.ndarray, count: int) -> np.ndarray:
+    """The lowest bits of words, each in a column: words x `count`, 0 or 1."""
+    return np.unpackbits(words.astype("<u8")[:, None].view(np.uint8), axis=1, count=count, bitorder="little")
+
+
 class DifferenceError(Failure):
     """RTL and model differ: `expected` is the model's level or word, `actual` the RTL's."""
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from passo.engine import EVENT, AroundEngine
+from passo.engine import EVENT, AroundEngine, bits_of
 
 GRAINS_PER_S = 100_000  # how often the switches are checked
 RESTING_GRAINS = 10  # as many together while no pin changes
@@ -130,10 +130,8 @@ class Machine(AroundEngine):
     def _follow(self, events: np.ndarray) -> None:
         """The axes go where the rising edges of STEP tell them."""
         step = np.concatenate([[self._step], events["step"]])
-        rising = ~step[:-1] & step[1:]
-        for axis in range(len(self.positions)):
-            at = rising >> np.uint64(axis) & np.uint64(1) != 0
-            down = int((events["dir"][at] >> np.uint64(axis) & np.uint64(1)).sum())
-            self.positions[axis] += int(at.sum()) - 2 * down
+        count = len(self.positions)
+        rising, down = bits_of(~step[:-1] & step[1:], count), bits_of(events["dir"], count)
+        self.positions += rising.sum(axis=0, dtype=np.int64) - 2 * (rising & down).sum(axis=0, dtype=np.int64)
         self._step = step[-1]
         self.enable = int(events["enable"][-1])

@@ -9,7 +9,7 @@ import numpy as np
 from passo import frame
 from passo.build import Parameters
 from passo.driver import Driver, DriverError
-from passo.engine import Engine, model_engine
+from passo.engine import Engine, bits_of, model_engine
 from passo.link import Hardware
 from passo.native import ffi, planner
 from passo.registers import Operation
@@ -18,11 +18,6 @@ CLOCK_HZ = 72_000_000
 PARAMETERS = Parameters()
 Q32 = 1 << 32
 GAP = 3  # clocks between two frames, hardly more than the core needs
-
-
-def _bits(words: np.ndarray) -> np.ndarray:
-    """The lowest eight bits of words, each in a column."""
-    return np.unpackbits(words.astype(np.uint8)[:, None], axis=1, bitorder="little")
 
 
 class Wire:
@@ -87,7 +82,9 @@ class Wire:
         step, dir_ = (
             np.concatenate([[was], events[pin]]) for was, pin in ((self._step, "step"), (self._dir, "dir"))
         )
-        rising, down, turning = map(_bits, (~step[:-1] & step[1:], dir_[1:], dir_[:-1] ^ dir_[1:]))
+        rising, down, turning = (
+            bits_of(levels, 8) for levels in (~step[:-1] & step[1:], dir_[1:], dir_[:-1] ^ dir_[1:])
+        )
         pulses = rising.sum(axis=0, dtype=np.int64)
         self.pulses += pulses
         self.net += pulses - 2 * (rising & down).sum(axis=0, dtype=np.int64)
