@@ -43,7 +43,6 @@ SPI = "passo_spi_top"
 BUS_TOPS = ("passo_wishbone", "passo_axi_lite")
 TOP_SIZE = (1, 4)
 
-ROUTER = ("inputs", "outputs")
 WHOLE = ("inputs", "encoders", "outputs", "raster", "compare")
 
 
@@ -76,13 +75,13 @@ class Goal:
 GOALS = (
     Goal("hx8k", 4, 132, 122, 3400),
     Goal("hx8k", 3, 0, 0, 3650, ("inputs",)),
-    Goal("hx8k", 3, 115, 105, 4500, ROUTER),
+    Goal("hx8k", 3, 115, 105, 4500, boards_report.PARTS),
     Goal("hx8k", 3, 105, 95, 5700, WHOLE),
     Goal("up5k", 6, 49, 47, 5280),
-    Goal("up5k", 3, 42, 40, 4600, ROUTER),
+    Goal("up5k", 3, 42, 40, 4600, boards_report.PARTS),
     Goal("ecp5-25", 6, 190, 180, 6000),
     Goal("gw1nr-9c", 6, 100, 90, 8640),
-    Goal("gw1nr-9c", 3, 90, 84, 5000, ROUTER),
+    Goal("gw1nr-9c", 3, 90, 84, 5000, boards_report.PARTS),
     Goal("gw1nr-9c", 3, 0, 0, 8640, WHOLE),
 )
 
