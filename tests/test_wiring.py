@@ -7,7 +7,10 @@ from passo.toolchain import paths
 
 from verify.equal import wiring
 
-SOME = ("passo_core.u_link.bus_busy", "passo_profile.u_ramp.ramp_half", "passo_axes.u_axis.direction")
+SOME = (
+    *("passo_core.u_link.bus_busy", "passo_profile.u_ramp.ramp_half", "passo_axes.u_axis.direction"),
+    "passo_trackers.u_join.path_down",
+)
 
 
 def test_every_instance_is_found() -> None:

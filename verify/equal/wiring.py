@@ -43,9 +43,10 @@ SET = 2  # of two channels, without inputs, encoders and outputs
 TRACKERS = 3  # set of trackers.py: five axes, of which three have a tracker alone, inputs and outputs
 # Kind of history ("": of that set), and how many are played.
 HISTORIES = (("", 20), ("machine", 20), ("trackers", 20), ("pokes", 300))
-FEW = (("machine", 10),)  # for some connections
+FEW = (("machine", 10), ("trackers", 10))  # for some connections
 LONGEST = 1800  # seconds, of all histories of a kind
-PATIENCE = 4  # times what they take without an inversion
+PATIENCE = 4  # times what they take without an inversion,
+LEAST = 120  # seconds, or so long: a computer that is busy for a moment shows no inversion
 # Which wire is inverted, as C++ in the Verilog of Verilator.
 NUMBER = r'$c("(getenv(\"PASSO_CUT\") ? atoi(getenv(\"PASSO_CUT\")) : 0)")'
 
@@ -192,7 +193,7 @@ def _uncut(player: Player) -> Player:
     began = time.monotonic()
     if at := player.first_seen(0):
         raise Failure(f"RTL and model differ without an inversion: {at}")
-    return replace(player, seconds=PATIENCE * (time.monotonic() - began))
+    return replace(player, seconds=max(LEAST, PATIENCE * (time.monotonic() - began)))
 
 
 def _first_seen(wire: int, players: list[Player]) -> str:

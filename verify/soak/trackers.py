@@ -80,7 +80,7 @@ def main() -> None:
             failed += 1
         if failed and asked.fast:
             break
-    for name, value in {**counts, "histories": asked.count}.items():
+    for name, value in {**counts, "histories": counts["histories"] + failed}.items():
         print(f"count {name} {value}")
     sys.exit(bool(failed))
 
