@@ -66,6 +66,7 @@ def test_a_host_of_both_engines(tmp_path: Path) -> None:
             assert machine.move(X=20).run().end["X"] == 20
             assert machine.move(X=0).run().end["X"] == 0
         assert server.wait(60) == 0
+    assert not path.exists()
     assert int(np.abs(moves_of(np.load(edges), 0)).sum()) == 2 * 1600
 
 
