@@ -97,14 +97,14 @@ static uint64_t rest_quiet(
 	uint64_t clocks = limit;
 
 	if (core->parameters.inputs != 0u)
-		clocks = passo_advance_least(
+		clocks = passo_least(
 		    clocks, passo_machine_quiet(&core->machine, inputs, &machine_wires, clocks_to_slew));
 	for (unsigned i = 0; i < core->parameters.channels && clocks != 0u; i++) {
 		const struct passo_channel_inputs channel_inputs = inputs_of(core, i, inputs);
 		const struct passo_channel *channel = &core->channel[i];
 
 		/* other moving channels are only skipped within their ticks */
-		clocks = passo_advance_least(clocks,
+		clocks = passo_least(clocks,
 		    i == moving
 			? passo_advance_surroundings_quiet(channel, &channel_inputs, clocks_to_slew)
 			: passo_advance_channel_quiet(channel, &channel_inputs, clocks_to_slew, clocks));
@@ -238,9 +238,9 @@ static uint64_t clocks_of_word(const struct passo_shift *shift, uint64_t limit)
 {
 	const uint64_t bit = 2u * (uint64_t)shift->half_period, word = 32u * bit;
 	const uint64_t left =
-	    passo_advance_least(word - shift->clock % word, bit * shift->bits - shift->clock);
+	    passo_least(word - shift->clock % word, bit * shift->bits - shift->clock);
 
-	return passo_advance_least(limit, left);
+	return passo_least(limit, left);
 }
 
 static void take_pins(struct passo_core *core, struct passo_inputs *inputs)

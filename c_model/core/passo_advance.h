@@ -5,14 +5,10 @@
 #define PASSO_ADVANCE_H
 
 #include "passo_core.h"
+#include "passo_least.h"
 
 /* Latency from phase to DDA; no shorter time of a running profile is skipped. */
 #define PASSO_ADVANCE_PIPELINE 4u
-
-static inline uint64_t passo_advance_least(uint64_t a, uint64_t b)
-{
-	return a < b ? a : b;
-}
 
 /* Clocks for which everything in the channel is quiet, except axes and profile; and skipping them. */
 uint64_t passo_advance_surroundings_quiet(

@@ -157,13 +157,13 @@ uint64_t passo_advance_profile_quiet(
 	if (channel->ramp_queue.now_pending || channel->path.take_q || channel->path.refresh
 	    || !take_to_end(channel, &progress))
 		return 0;
-	uint64_t clocks = passo_advance_least(limit, goal - tick_count);
+	uint64_t clocks = passo_least(limit, goal - tick_count);
 	if (channel->line.active && velocity != 0u) {
 		struct progress then = progress;
 		const int64_t substeps = sum_phase(&then, velocity, clocks);
 		if (!count_substeps(channel, &then, substeps)) {
 			const uint64_t allowed = substeps_to_event(channel, &progress);
-			clocks = passo_advance_least(
+			clocks = passo_least(
 			    clocks, (((allowed + 1u) << 48) - 1u - progress.phase) / velocity);
 		}
 	}
@@ -174,11 +174,11 @@ uint64_t passo_advance_channel_quiet(const struct passo_channel *channel,
     const struct passo_channel_inputs *inputs, uint64_t clocks_to_slew, uint64_t limit)
 {
 	uint64_t clocks =
-	    passo_advance_least(limit, passo_advance_surroundings_quiet(channel, inputs, clocks_to_slew));
+	    passo_least(limit, passo_advance_surroundings_quiet(channel, inputs, clocks_to_slew));
 
-	clocks = passo_advance_least(clocks, passo_advance_ramp_quiet(&channel->ramp));
+	clocks = passo_least(clocks, passo_advance_ramp_quiet(&channel->ramp));
 	for (unsigned i = 0; i < channel->axes && clocks != 0u; i++)
-		clocks = passo_advance_least(clocks, passo_advance_axis_quiet(channel, i));
+		clocks = passo_least(clocks, passo_advance_axis_quiet(channel, i));
 	if (clocks == 0u)
 		return 0;
 	if (passo_advance_profile_counts(channel))
@@ -256,8 +256,8 @@ static uint64_t ticks_to_event(
 	if (velocity == 0u)
 		return most;
 	if (channel->line.active)
-		substeps = passo_advance_least(substeps, substeps_to_event(channel, progress));
-	return passo_advance_least(
+		substeps = passo_least(substeps, substeps_to_event(channel, progress));
+	return passo_least(
 	    most, (((substeps + 1u) << 48) - 1u - progress->phase) / (velocity << tick_log2));
 }
 
@@ -304,7 +304,7 @@ uint64_t passo_advance_skip_ticks(
 		return 0;
 	/* stop before the last tick of the ramp, which takes the ramp from the queue */
 	while (ramp->ticks > 1u && skipped < limit >> tick_log2) {
-		const uint64_t most = passo_advance_least(ramp->ticks - 1u, (limit >> tick_log2) - skipped);
+		const uint64_t most = passo_least(ramp->ticks - 1u, (limit >> tick_log2) - skipped);
 		const uint64_t ticks = ticks_to_event(channel, &progress, most, tick_log2);
 
 		if (ticks == 0u)

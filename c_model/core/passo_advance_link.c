@@ -60,7 +60,7 @@ static uint64_t quiet(const struct passo_core *core, const struct passo_inputs *
 	if (!shift)
 		return core->inputs.spi_sclk == pins->spi_sclk ? clocks : 0u;
 	const uint64_t half = 32u * (uint64_t)shift->half_period;
-	return passo_advance_least(clocks, (half - shift->clock % half) % half);
+	return passo_least(clocks, (half - shift->clock % half) % half);
 }
 
 /* Skips these clocks: the slave sees the edges. */
@@ -98,7 +98,7 @@ uint64_t passo_advance_link(
 	while (clocks < limit && core->link.bus.address == before.address
 	       && core->link.bus.commit == before.commit && passo_advance_link_is_alone(core)) {
 		const uint64_t skipped =
-		    passo_advance_least(quiet(core, &pins, shift, wires.status), limit - clocks);
+		    passo_least(quiet(core, &pins, shift, wires.status), limit - clocks);
 
 		if (skipped != 0u)
 			skip(core, &pins, shift, skipped);

@@ -117,13 +117,13 @@ static bool skip(struct run *run, uint64_t limit)
 
 	for (unsigned i = 0; i < channel->axes; i++)
 		if (!run->idle[i])
-			clocks = passo_advance_least(clocks, passo_advance_axis_quiet(channel, i));
+			clocks = passo_least(clocks, passo_advance_axis_quiet(channel, i));
 	if (clocks < PASSO_ADVANCE_PIPELINE)
 		return false;
 	/* outputs see the velocity of each tick */
 	uint64_t skipped = channel->has_outputs ? 0u : passo_advance_skip_ticks(channel, run->inputs, clocks);
 	if (skipped == 0u) {
-		clocks = passo_advance_least(clocks, passo_advance_ramp_quiet(&channel->ramp));
+		clocks = passo_least(clocks, passo_advance_ramp_quiet(&channel->ramp));
 		skipped = passo_advance_profile_quiet(channel, run->inputs->parameters, clocks);
 		if (skipped == 0u)
 			return false;

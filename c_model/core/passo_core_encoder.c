@@ -3,7 +3,7 @@
  */
 #include "passo_core_encoder.h"
 
-#include "passo_advance.h"
+#include "passo_least.h"
 
 static bool sampled(const struct passo_encoder_filter *filter)
 {
@@ -92,9 +92,9 @@ uint64_t passo_encoder_quiet(const struct passo_encoder *encoder, const struct p
 	    || encoder->count_down != ((a == b) != wires->inverted) || encoder->count_made || encoder->slipped
 	    || encoder->index_event || wires->clear)
 		return 0;
-	clocks = passo_advance_least(filter_quiet(&encoder->a, wires->a, wires->filter),
+	clocks = passo_least(filter_quiet(&encoder->a, wires->a, wires->filter),
 	    filter_quiet(&encoder->b, wires->b, wires->filter));
-	return passo_advance_least(clocks, filter_quiet(&encoder->index, wires->index, wires->filter));
+	return passo_least(clocks, filter_quiet(&encoder->index, wires->index, wires->filter));
 }
 
 static void filter_skip(struct passo_encoder_filter *filter, uint64_t clocks)

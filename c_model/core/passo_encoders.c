@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Encoders of a channel, and the follower. See rtl/passo_encoders.v.
  */
-#include "passo_advance.h"
+#include "passo_least.h"
 #include "passo_model.h"
 #include "passo_words.h"
 
@@ -230,7 +230,7 @@ uint64_t passo_encoders_quiet(const struct passo_channel *channel, const struct 
 
 		if (!passo_following_quiet(&axis->following, &following) || axis->index_event_q)
 			return 0;
-		clocks = passo_advance_least(clocks, passo_encoder_quiet(&axis->encoder, &pins));
+		clocks = passo_least(clocks, passo_encoder_quiet(&axis->encoder, &pins));
 		soft = soft || (axis->following.exceeded && axis->stops_soft);
 		hard = hard || (axis->following.exceeded && axis->stops_hard);
 	}

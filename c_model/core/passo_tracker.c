@@ -5,7 +5,7 @@
  */
 #include <stddef.h>
 
-#include "passo_advance.h"
+#include "passo_least.h"
 #include "passo_model.h"
 #include "passo_words.h"
 
@@ -317,7 +317,7 @@ static uint64_t clocks_to_effect(const struct passo_channel *channel, unsigned i
 
 	for (unsigned k = 0; k < sizeof effects; k++)
 		clocks =
-		    passo_advance_least(clocks, (i * PASSO_TRACKER_TURN + effects[k] + tick - now) % tick);
+		    passo_least(clocks, (i * PASSO_TRACKER_TURN + effects[k] + tick - now) % tick);
 	return clocks;
 }
 
@@ -363,9 +363,9 @@ uint64_t passo_trackers_quiet(const struct passo_channel *channel, const struct 
 		const struct passo_tracker_axis *axis = &trackers->axis[i];
 
 		if (axis->shown != (uint32_t)(axis->position >> 32))
-			clocks = passo_advance_least(clocks, clocks_to_slot(trackers, SLOT_SHOWN));
+			clocks = passo_least(clocks, clocks_to_slot(trackers, SLOT_SHOWN));
 		if (!axis_rests(trackers, i) || (i == turn && !began_so(trackers, i)))
-			clocks = passo_advance_least(clocks, clocks_to_effect(channel, i));
+			clocks = passo_least(clocks, clocks_to_effect(channel, i));
 	}
 	return clocks;
 }

@@ -22,7 +22,7 @@ def load() -> tuple[FFI, Any]:
     """The C functions and structs of c_model/core/passo_core_encoder.h."""
     ffi = FFI()
     ffi.cdef(declarations([HEADER]).replace("_Bool", "bool"))
-    return ffi, ffi.dlopen(str(library("encoder", [paths.core, paths.protocol], SOURCES, "-O2")))
+    return ffi, ffi.dlopen(str(library("encoder", [paths.core], SOURCES, "-O2")))
 
 
 def _inputs(name: str) -> list[str]:
