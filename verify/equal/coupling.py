@@ -24,6 +24,7 @@ class Link:
     signed: bool = False
     kept: bool = False  # by a reset
     probe: str | None = None  # the address of a memory on which its next value depends
+    bits: str | None = None  # a C expression: nothing is said of the bits that are 0 in it
 
 
 @dataclass(frozen=True)
@@ -78,8 +79,9 @@ def _link(entry: str | dict[str, Any]) -> Link:
     return Link(entry) if isinstance(entry, str) else Link(entry["is"], *_rest(entry))
 
 
-def _rest(entry: dict[str, Any]) -> tuple[str | None, bool, bool, str | None]:
-    return entry.get("when"), entry.get("signed", False), entry.get("kept", False), entry.get("probe")
+def _rest(entry: dict[str, Any]) -> tuple[str | None, bool, bool, str | None, str | None]:
+    flags = entry.get("signed", False), entry.get("kept", False)
+    return entry.get("when"), *flags, entry.get("probe"), entry.get("bits")
 
 
 def read_coupling(path: Path) -> Coupling:

@@ -40,7 +40,7 @@ class Model:
     def __init__(self, coupling: Coupling, root: Path) -> None:
         links = [*coupling.inputs.values(), *coupling.outputs.values(), *coupling.registers.values()]
         self.expressions = [link.expression for link in links]
-        self.expressions += [link.when for link in links if link.when]
+        self.expressions += [text for link in links for text in (link.when, link.bits) if text]
         self.expressions += [f"probe == ({link.probe})" for link in links if link.probe]
         self.expressions += [link.expression for link in coupling.invariants.values()]
         self.expressions += [assumption["that"] for assumption in coupling.assumptions.values()]

@@ -54,17 +54,27 @@ class Outcome:
 
 def _same(term: z3.ExprRef, value: Value, signed: bool) -> Condition:
     """Whether a register or port of the RTL has the value of a C expression."""
-    kind = value.type
     own = value.bits
     if z3.is_bool(term):
         if isinstance(own, bool | z3.BoolRef):
             return term == own
         term = z3.If(term, z3.BitVecVal(1, 1), z3.BitVecVal(0, 1))
-    c_signed = isinstance(kind, Integer) and kind.signed
-    number = convert(value, Integer(64, c_signed)).bits
-    number = z3.BitVecVal(number, 64) if isinstance(number, int) else number
     more = 64 - term.size()
-    return (z3.SignExt(more, term) if signed else z3.ZeroExt(more, term)) == number
+    return (z3.SignExt(more, term) if signed else z3.ZeroExt(more, term)) == _number(value)
+
+
+def _number(value: Value) -> z3.BitVecRef:
+    """The value of a C expression in 64 bits."""
+    c_signed = isinstance(value.type, Integer) and value.type.signed
+    number = convert(value, Integer(64, c_signed)).bits
+    return z3.BitVecVal(number, 64) if isinstance(number, int) else number
+
+
+def _same_bits(term: z3.BitVecRef, value: Value, bits: Value) -> Condition:
+    """The same, of the bits that are 1 in another expression; without any nothing is said."""
+    mask = _number(bits)
+    own = z3.ZeroExt(64 - term.size(), term)
+    return z3.Implies(mask != 0, own & mask == _number(value) & mask)
 
 
 def _named(entry: str) -> tuple[str, int, int]:
@@ -83,7 +93,8 @@ def _coupled(
 ) -> dict[str, Condition]:
     found: dict[str, Condition] = {}
     for name, link in links.items():
-        equal = _same(_term(name, terms), values[link.expression], link.signed)
+        term, value = _term(name, terms), values[link.expression]
+        equal = _same_bits(term, value, values[link.bits]) if link.bits else _same(term, value, link.signed)
         found[name] = equal if link.when is None else z3.Implies(truth(values[link.when]), equal)
     return found
 
