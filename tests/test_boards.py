@@ -13,8 +13,9 @@ import pytest
 from passo.pins import INPUTS, OUTPUTS
 from passo.toolchain import paths
 from passo_fpga import boards as module
-from passo_fpga import report, synth
+from passo_fpga import synth
 from passo_fpga.boards import Board, board, boards
+from passo_fpga.design import core
 from passo_fpga.devices import ECP5, GW1N, GW2A, ICE40
 from passo_fpga.generate import TOP, generate, pin_file, pll_file
 from passo_fpga.pll import PllError, dividers
@@ -139,7 +140,7 @@ def test_core_gets_the_parameters_of_its_device(board: Board) -> None:
     """Through the top; and in the report."""
     for name in (*board.device.core, "TRACKERS", "TRACKED"):
         assert re.search(rf"\.{name}\s*\({name}\)", TOP.read_text())
-    parameters = report.core(board.device, (1, board.axes)).parameters
+    parameters = core(board.device, (1, board.axes)).parameters
     assert parameters == {"CHANNELS": 1, "AXES": board.axes, **board.device.core}
     assert board.device.core.items() <= board.parameters().items()
 

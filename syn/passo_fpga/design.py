@@ -10,7 +10,8 @@ from passo.toolchain import paths
 
 from passo_fpga.devices import Device
 
-TOPS = ("passo_spi_top", "passo_wishbone", "passo_axi_lite", "passo_board")  # with the ports of the core
+SPI = "passo_spi_top"
+TOPS = (SPI, "passo_wishbone", "passo_axi_lite", "passo_board")  # with the ports of the core
 
 
 @dataclass(frozen=True)
@@ -22,7 +23,7 @@ class Design:
 
     name: str
     device: Device
-    top: str = "passo_spi_top"
+    top: str = SPI
     parameters: Mapping[str, int | str] = field(default_factory=dict)
     flatten: bool = True
     left_out: tuple[str, ...] = ()
@@ -63,3 +64,11 @@ class Design:
 
     def _parameter(self, name: str, default: int) -> int:
         return int(self.parameters.get(name, default))
+
+
+def core(device: Device, size: tuple[int, int], top: str = SPI, parts: tuple[str, ...] = ()) -> Design:
+    """The core alone behind one of its host interfaces, with its ports as pins; `size`: channels, axes."""
+    channels, axes = size
+    parameters = {"CHANNELS": channels, "AXES": axes, **device.core, **{part.upper(): 1 for part in parts}}
+    name = "-".join([device.name, f"{channels}x{axes}", *parts])
+    return Design(name if top == SPI else f"{name}-{top.removeprefix('passo_')}", device, top, parameters)

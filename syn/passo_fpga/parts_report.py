@@ -9,6 +9,7 @@ device of CLOCK_DEVICE, over several seeds, also without a part.
 import statistics
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -16,7 +17,7 @@ from passo.console import Estimate, console, stages, table
 from passo.output import write_json
 from passo.toolchain import paths
 
-from passo_fpga.design import Design
+from passo_fpga.design import Design, core
 from passo_fpga.devices import DEVICES, SPI_MHZ, Device
 from passo_fpga.flow import cells, place, synthesize
 from passo_fpga.pages import markdown, mhz, write_block
@@ -36,11 +37,9 @@ PARTS = (*PORTS, TRACKED)
 def design(device: Device, axes: int, part: str = "") -> Design:
     """The core with a part and what that needs, or with none; of "tracked" half of the axes have no lines."""
     if part == TRACKED:
-        chosen = {"TRACKERS": 1, "TRACKED": axes // 2}
-    else:
-        chosen = {name.upper(): 1 for name in (part, NEEDS.get(part)) if name}
-    parameters = {"CHANNELS": 1, "AXES": axes, **device.core, **chosen}
-    return Design(f"{device.name}-1x{axes}{f'-{part}' if part else ''}", device, "passo_spi_top", parameters)
+        made = core(device, (1, axes), parts=("trackers",))
+        return replace(made, name=f"{made.name}-{part}", parameters={**made.parameters, "TRACKED": axes // 2})
+    return core(device, (1, axes), parts=tuple(name for name in (part, NEEDS.get(part)) if name))
 
 
 def axes_of(part: str) -> int:

@@ -25,8 +25,8 @@ from passo.toolchain import paths
 
 from passo_fpga import boards_report, pages, parts_report
 from passo_fpga.boards import names
-from passo_fpga.design import Design
-from passo_fpga.devices import DEVICES, SPI_MHZ, Device
+from passo_fpga.design import SPI, Design, core
+from passo_fpga.devices import DEVICES, SPI_MHZ
 from passo_fpga.flow import Placed, cells, place, synthesize
 from passo_fpga.split import difference, split
 from passo_fpga.table import BoardError
@@ -39,7 +39,6 @@ SIZES = ((1, 1), (1, 2), (1, 4), (1, 6), (1, 8), (2, 1), (2, 2), (4, 1), (4, 2))
 SPLIT_DEVICES = ("hx8k", "ecp5-25")
 SPLIT_SIZE = (1, 4)
 CHANNEL_DEVICE = "hx8k"  # of the price of a further channel, module by module
-SPI = "passo_spi_top"
 BUS_TOPS = ("passo_wishbone", "passo_axi_lite")
 TOP_SIZE = (1, 4)
 
@@ -150,14 +149,6 @@ def _boards(only: str) -> int:
         print(error, file=sys.stderr)
         return 1
     return 0
-
-
-def core(device: Device, size: tuple[int, int], top: str = SPI, parts: tuple[str, ...] = ()) -> Design:
-    """The design of the core alone behind one of its host interfaces, with its ports as pins."""
-    channels, axes = size
-    parameters = {"CHANNELS": channels, "AXES": axes, **device.core, **{part.upper(): 1 for part in parts}}
-    name = "-".join([device.name, f"{channels}x{axes}", *parts])
-    return Design(name if top == SPI else f"{name}-{top.removeprefix('passo_')}", device, top, parameters)
 
 
 def measure(wanted: Sequence[Key], splits: bool) -> dict[str, Any]:
