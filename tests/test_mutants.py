@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A sample of `make verify ONLY=mutants`: that judges see mutants, and that a score can be 0."""
 
+import json
 import random
 import subprocess
 import tempfile
@@ -10,7 +11,7 @@ from typing import Any
 
 import pytest
 from passo import random_cases
-from passo.build import Parameters
+from passo.build import TOP, Parameters
 from passo.engine import model_engine
 from passo.toolchain import environment
 
@@ -28,6 +29,7 @@ from verify.mutants import (
     outputs_judge,
     page,
     registers_judge,
+    rests_judge,
     shapes_judge,
     timings_judge,
     trackers_judge,
@@ -38,7 +40,7 @@ from verify.mutants.c_mutate import DECLARED
 from verify.mutants.c_source import CMutant
 from verify.mutants.c_source import drawn as drawn_c
 from verify.mutants.engine_judge import Check
-from verify.mutants.netlist import PLAIN, TRACKED, Core, Mutant, drawn
+from verify.mutants.netlist import PLAIN, TRACKED, Core, Mutant, drawn, file_of
 from verify.mutants.netlist import library as verilated
 from verify.soak.parts import MACHINE, SETS
 from verify.soak.program import build
@@ -100,6 +102,7 @@ def test_a_judge_that_is_switched_off_scores_0(sample: tuple[list[Mutant], Path]
         (corners_judge.CHECK, ("motion", "ramp", "timescale", "core", "channel")),
         (lines_judge.CHECK, ("line", "dda", "lines", "line_queue")),
         (timings_judge.CHECK, ("axis", "axis_settings", "axes")),
+        (rests_judge.CHECK, ("line_queue", "ramp_queue", "admission", "motion", "axis")),
         (registers_judge.CHECKS[0], ("rules", "registers", "header", "verdict", "link_bus")),
     ],
 )
@@ -118,6 +121,7 @@ def test_a_check_in_python_kills_mutants(
     [
         (inputs_judge.CHECK, MACHINE),
         (outputs_judge.CHECK, MACHINE),
+        (rests_judge.CHECK, MACHINE),
         (trackers_judge.CHECK, TRACKED.parameters),
     ],
 )
@@ -154,6 +158,25 @@ def test_what_a_judge_kills_is_not_equal(sample: tuple[list[Mutant], Path]) -> N
     for mutant in some:
         if mutant.number in found:
             assert not equivalence.equal(problems[mutant.module], mutant.number, 60), mutant.name
+
+
+def test_what_nobody_reads_is_equal_in_the_core(sample: tuple[list[Mutant], Path]) -> None:
+    """A core without trackers does not mind whether the path runs: its module alone does not show that."""
+    mutants, library = sample
+    modules = json.loads((SAMPLE.folder / "core.json").read_text())["modules"]
+    name = next(name for name in modules if file_of(name) == "passo_channel_path")
+    runs = modules[name]["netnames"]["path_runs"]["bits"]
+    cells = modules[name]["cells"].items()
+    cell = next(cell for cell, made in cells if made["connections"].get("Y") == runs)
+    mutation = f"mutate -mode inv -module {name} -cell {cell} -port Y -portbit 0"
+    unread = Mutant(SAMPLE.name, 1 + max(mutant.number for mutant in mutants), "", mutation, "")
+    found = killed(library, [mutant.number for mutant in mutants])
+    seen = next(mutant for mutant in mutants if mutant.number in found)
+    module, core = (name, "module"), (TOP, "core")
+    problems = equivalence.prepare(SAMPLE, {module: [unread], core: [unread, seen]})
+    assert not equivalence.equal(problems["module"], unread.number, 60)
+    assert equivalence.equal(problems["core"], unread.number, 60)
+    assert not equivalence.equal(problems["core"], seen.number, 60)
 
 
 def test_a_mutant_with_the_same_object_code_is_no_fault() -> None:

@@ -6,7 +6,7 @@ import random
 from passo import registers as r
 from passo.build import Parameters
 from passo.engine import Engine
-from passo.registers import Cause, TriggerAction, TriggerSource
+from passo.registers import Cause, State, TriggerAction, TriggerSource
 
 from tests.helpers.closed_form import ONE, Line, Ramp
 from tests.helpers.motions import to_line, to_ramp
@@ -111,6 +111,66 @@ def check_end_endless(machine: Machine) -> None:
     machine.clear()
 
 
+def wait_for_sync(machine: Machine, steps: list[int]) -> None:
+    """Repeat a line of these steps from the next edge of `sync` on."""
+    machine.link.write(r.ADDRESS_RUN, 1 << r.RUN_RUN_LSB | 1 << r.RUN_WAIT_SYNC_LSB)
+    machine.channel.push_lines([to_line(Line(8, tuple(steps), endless=True))])
+    machine.channel.push_ramps([to_ramp(Ramp(ONE // 20, 0)), to_ramp(Ramp(ONE // 20, 60_000))])
+    machine.engine.run(600)
+    assert machine.channel.state().state == State.ARMED
+
+
+def check_unknown(machine: Machine) -> None:
+    """An edge of `sync` while the inputs are unknown begins nothing; the next one does."""
+    wait_for_sync(machine, [8] * machine.axes)
+    machine.link.write(r.ADDRESS_INPUT_FILTER, 2000)
+    for clocks, state in ((6000, State.ARMED), (100, State.RUN)):
+        machine.engine.sync(True)
+        machine.engine.run(clocks)
+        machine.engine.sync(False)
+        machine.engine.run(100)
+        assert machine.channel.state().state == state, f"{state.name} after an edge of sync"
+    machine.channel.abort()
+    machine.check_position()
+    machine.link.write(r.ADDRESS_INPUT_FILTER, 0)
+    machine.clear()
+
+
+def check_soft_limit(machine: Machine) -> None:
+    """The axis brakes beyond it; a motion that is prepared when it closes makes no step toward it."""
+    rng, link, axis, way = machine.rng, machine.link, machine.rng.randrange(machine.axes), 1
+    pin = "limit_low"
+    if rng.getrandbits(1):
+        way, pin = -way, "limit_high"
+    steps = [0] * machine.axes
+    steps[axis] = -8 * way
+    settings = machine.channel.axis_base(axis) + r.AXIS_INPUTS
+    link.write(r.ADDRESS_INPUT_FILTER, 0)
+    link.write(settings, 1 << r.AXIS_INPUTS_LIMIT_SOFT_LSB)
+    link.write(machine.channel.base + r.CHANNEL_STOP_SLEW, 2000)
+    machine.move(steps, 20)
+    machine.set(pin, 1 << axis)
+    machine.see()
+    closed = machine.positions()[axis]
+    machine.engine.run(128 * 60)
+    machine.check_position()
+    assert machine.channel.state().cause == Cause.LIMIT
+    assert abs(machine.positions()[axis] - closed) > 40, "a soft limit lets the axis brake"
+    machine.clear()
+    wait_for_sync(machine, steps)
+    where = machine.positions()[axis]
+    machine.set(pin, 1 << axis)
+    machine.engine.run(50)
+    machine.engine.sync(True)
+    machine.engine.run(3000)
+    machine.engine.sync(False)
+    machine.check_position()
+    assert machine.channel.state().cause == Cause.LIMIT
+    assert machine.positions()[axis] == where, "a step into a switch that closed before the motion began"
+    machine.clear()
+    link.write(settings, 0)
+
+
 def check_watchdog(machine: Machine) -> None:
     """Silence stops a motion after its time, and then disables the drives."""
     for axis in range(machine.axes):
@@ -144,7 +204,7 @@ def check(engine: Engine, parameters: Parameters, rng: random.Random) -> None:
         return
     machine = Machine(engine, rng, parameters)
     check_levels(machine)
-    for kind in [*KINDS, check_trigger, check_trigger, check_trigger, check_end_endless]:
+    for kind in (*KINDS, *3 * [check_trigger], check_end_endless, check_unknown, check_soft_limit):
         kind(machine)
     check_watchdog(machine)
 

@@ -54,7 +54,7 @@ class Outputs(Motions):
         step = rng.randint(1 << 16, 1 << 20)
         gap = rng.randint(24, 40)
         velocity = ONE // gap
-        lag = rng.choice((0, rng.randint(1, 90)))
+        lag = rng.choice((0, rng.randint(1, 90)) if count > PUSHED else (0, 60, rng.randint(256, 1500)))
         reference = (velocity >> 16) + rng.getrandbits(rng.choice((20, 27, 29)))
         pitch = rng.randint(2, 9) if count < PUSHED else 1
         self.write(channel, r.CHANNEL_OUTPUT_LEVELS, rng.getrandbits(8), lag, step, reference, pitch)
@@ -96,7 +96,7 @@ class Outputs(Motions):
 
     def check_power(self, begin: int, end: int, power: int, step: int) -> None:
         """A power that does not depend on the speed."""
-        due = pulses(power, step, end - begin, step)
+        due = pulses(power, step, max(end - begin, 0), step)  # none, if it lags beyond the motion
         assert (self.level("power", 0, begin, end) & 1 == due).all(), f"power {power} of step {step}"
 
     def check_proportional(self, begin: int, end: int, power: int, step: int, cost: int) -> None:

@@ -32,6 +32,7 @@ from verify.mutants import (
     motions_judge,
     outputs_judge,
     registers_judge,
+    rests_judge,
     rtl_judge,
     shapes_judge,
     timings_judge,
@@ -76,6 +77,7 @@ def run_core(core: Core, seed: int, each: int, only: Collection[str]) -> list[Sc
     for check in (
         trackers_judge.CHECK,
         *(frames_judge.CHECK, motions_judge.CHECK, timings_judge.CHECK, lines_judge.CHECK),
+        rests_judge.CHECK,
         *(shapes_judge.CHECK, corners_judge.CHECK, inputs_judge.CHECK, outputs_judge.CHECK),
         *(*registers_judge.CHECKS, *trackers_judge.TABLES),
     ):

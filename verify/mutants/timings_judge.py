@@ -33,10 +33,12 @@ class Timings(Motions):
         places = [(channel, axis) for channel in self.channels for axis in range(axes)]
         timings = [PinTiming(*(rng.randint(1, greatest) for _ in range(4))) for _ in places]
         flags = [r.AxisPinsWord.unpack(rng.getrandbits(4) << r.AXIS_PINS_STEP_INVERTED_LSB) for _ in places]
-        for (channel, axis), flag in zip(places, flags, strict=True):
+        settings = list(zip(places, flags, timings, strict=True))
+        rng.shuffle(settings)  # what is written to one axis leaves all others
+        for (channel, axis), flag, _ in settings:
             self.link.write(channel.axis_base(axis), flag.pack())
             self.run(self.greatest)
-        for (channel, axis), timing in zip(places, timings, strict=True):
+        for (channel, axis), _, timing in settings:
             words = timing.step_high << 16 | timing.step_low, timing.dir_setup << 16 | timing.dir_hold
             self.link.write(channel.axis_base(axis) + r.AXIS_STEP_TIMING, *words)
         self.greatest = 3 * greatest

@@ -5,6 +5,7 @@ Targets, speeds and enables that change at any time, stops of all kinds, beside 
 """
 
 import random
+import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
@@ -12,9 +13,10 @@ from passo import registers as r
 from passo.build import Parameters
 from passo.engine import Engine
 from passo.host import RATE_ONE
-from passo.registers import Cause, State
+from passo.registers import Cause, State, Verdict
 
 from tests.helpers.closed_form import ONE, Line, Ramp, substep_clocks
+from tests.test_register_table import Core as Table
 from verify.mutants import registers_judge
 from verify.mutants.engine_judge import Check
 from verify.mutants.motions_judge import FRAME, TIME, Steps, all_substeps
@@ -26,6 +28,7 @@ FAR = HALF - 5000  # nearly half of all positions away: a target beyond is behin
 ABOVE = 3  # ticks above the fastest motion
 DROPPED = 7  # steps of a tracker, at most, by a hard stop
 NOT_MADE = 3  # steps when an axis has no room: one is lost, two that wait for it are dropped
+OWN = re.compile("TRACKER|COMMAND|TRIGGER")  # registers that do something to a tracker
 SLOWEST = STEP // 8  # that is drawn: nothing takes long
 
 # Clocks by which a tracker's step counts before it is at the pins: those that fit the core itself.
@@ -52,6 +55,13 @@ class Trackers(Host):
         acceleration = int(2 ** self.rng.uniform(22, longest))
         return min(STEP - 1, max(SLOWEST, int(acceleration * 2 ** self.rng.uniform(0, 6)))), acceleration
 
+    def elsewhere(self) -> None:
+        """What is written to other registers of the channel is not for its trackers."""
+        table = Table(self.link, self.parameters)
+        for address, register in table.registers:
+            if register.block == "CHANNEL" and "w" in register.access and not OWN.search(register.name):
+                assert table.write(address, register.reset) == Verdict.OK, register.name
+
     def lands(self) -> None:
         """All axes together, from rest to rest; in nearly the shortest time."""
         rng = self.rng
@@ -61,6 +71,7 @@ class Trackers(Host):
         for axis in range(self.axes):
             self.limit(axis, *limits[axis])
             self.go(axis, self.position(axis) + distances[axis])
+        self.elsewhere()
         self.alone()
         everyone = (1 << self.axes) - 1
         self.enable(everyone)
