@@ -237,8 +237,7 @@ uint64_t passo_core_run(struct passo_core *core, const struct passo_inputs *inpu
 static uint64_t clocks_of_word(const struct passo_shift *shift, uint64_t limit)
 {
 	const uint64_t bit = 2u * (uint64_t)shift->half_period, word = 32u * bit;
-	const uint64_t left =
-	    passo_least(word - shift->clock % word, bit * shift->bits - shift->clock);
+	const uint64_t left = passo_least(word - shift->clock % word, bit * shift->bits - shift->clock);
 
 	return passo_least(limit, left);
 }

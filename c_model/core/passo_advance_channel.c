@@ -163,8 +163,8 @@ uint64_t passo_advance_profile_quiet(
 		const int64_t substeps = sum_phase(&then, velocity, clocks);
 		if (!count_substeps(channel, &then, substeps)) {
 			const uint64_t allowed = substeps_to_event(channel, &progress);
-			clocks = passo_least(
-			    clocks, (((allowed + 1u) << 48) - 1u - progress.phase) / velocity);
+			clocks =
+			    passo_least(clocks, (((allowed + 1u) << 48) - 1u - progress.phase) / velocity);
 		}
 	}
 	return clocks < PASSO_ADVANCE_PIPELINE ? 0u : clocks;
@@ -257,8 +257,7 @@ static uint64_t ticks_to_event(
 		return most;
 	if (channel->line.active)
 		substeps = passo_least(substeps, substeps_to_event(channel, progress));
-	return passo_least(
-	    most, (((substeps + 1u) << 48) - 1u - progress->phase) / (velocity << tick_log2));
+	return passo_least(most, (((substeps + 1u) << 48) - 1u - progress->phase) / (velocity << tick_log2));
 }
 
 /* Integrates the velocity over ticks, from a place in one to the same place in another; returns the substeps.

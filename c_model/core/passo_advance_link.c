@@ -97,8 +97,7 @@ uint64_t passo_advance_link(
 	/* the trackers note a frame that is being executed */
 	while (clocks < limit && core->link.bus.address == before.address
 	       && core->link.bus.commit == before.commit && passo_advance_link_is_alone(core)) {
-		const uint64_t skipped =
-		    passo_least(quiet(core, &pins, shift, wires.status), limit - clocks);
+		const uint64_t skipped = passo_least(quiet(core, &pins, shift, wires.status), limit - clocks);
 
 		if (skipped != 0u)
 			skip(core, &pins, shift, skipped);

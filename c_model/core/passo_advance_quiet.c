@@ -172,8 +172,8 @@ uint64_t passo_advance_surroundings_quiet(
 	    || !ramps_settled(&channel->ramp_queue, inputs->parameters)
 	    || !lines_settled(channel, inputs->parameters))
 		return 0;
-	uint64_t clocks = passo_least(
-	    passo_inputs_quiet(channel, inputs), passo_positions_quiet(&channel->positions));
+	uint64_t clocks =
+	    passo_least(passo_inputs_quiet(channel, inputs), passo_positions_quiet(&channel->positions));
 	clocks = passo_least(clocks, passo_trackers_quiet(channel, inputs));
 	clocks = passo_least(clocks, passo_encoders_quiet(channel, inputs));
 	clocks = passo_least(clocks, outputs_quiet(channel, inputs));

@@ -316,8 +316,7 @@ static uint64_t clocks_to_effect(const struct passo_channel *channel, unsigned i
 	uint64_t clocks = UINT64_MAX;
 
 	for (unsigned k = 0; k < sizeof effects; k++)
-		clocks =
-		    passo_least(clocks, (i * PASSO_TRACKER_TURN + effects[k] + tick - now) % tick);
+		clocks = passo_least(clocks, (i * PASSO_TRACKER_TURN + effects[k] + tick - now) % tick);
 	return clocks;
 }
 

@@ -50,7 +50,7 @@ class Rests(Motions):
         assert not self.engine.running >> channel.number & 1, "the shortest motion is over"
 
     def check_quiet(self, channel: Channel, busy: int, what: str) -> None:
-        """Idle, but not quiet for so many clocks: what needs a quiet channel is refused."""
+        """Idle, but not quiet for `busy` clocks: what needs a quiet channel is refused."""
         zero = channel.base + r.CHANNEL_COMMAND, 1 << r.CHANNEL_COMMAND_ZERO_LSB
         table = Table(self.link, self.parameters)
         state = channel.state()
