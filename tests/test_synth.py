@@ -8,6 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from passo.failure import Failure
+from passo.pins import INPUTS, OUTPUTS
 from passo.toolchain import paths
 from passo_fpga import boards_report, flow, pages, parts_report, report, synth, tools
 from passo_fpga.boards import Board, boards
@@ -21,6 +23,7 @@ from passo_fpga.parts import PORTS
 from passo_fpga.split import difference
 
 BOARDS = list(boards().values())
+SPI_PINS = dict.fromkeys(("spi_sclk", "spi_mosi", "spi_cs_n", "spi_miso", "spi_miso_enable"), 1)
 
 
 def placed(**clocks: tuple[float, float]) -> Placed:
@@ -422,6 +425,20 @@ def test_report_tries_more_seeds_where_there_is_a_goal(
     said = capsys.readouterr().out
     assert len(re.findall(r"^\[ *0:00\] place and route \d+ of 17(, 0:00 left)?: ", said, re.M)) == 15
     assert re.search(r"synthesis 4 of 4: ", said) and re.search(r"place and route 17 of 17: ", said)
+
+
+@pytest.mark.parametrize("goal", report.GOALS, ids=lambda goal: "-".join((goal.device, *goal.parts)))
+def test_a_goal_has_pins(goal: report.Goal) -> None:
+    """A core is placed with its ports as pins, on chips whose pins are listed."""
+    device = DEVICES[goal.device]
+    bits = {"1": 1, "CHANNELS": 1, "CHANNELS*AXES": goal.axes, "CHANNELS*8": 8}
+    there = [pin for pin in (*INPUTS, *OUTPUTS) if not pin.parameter or pin.parameter in goal.parts]
+    ports = {"clk": 1, **SPI_PINS, **{pin.name: bits[pin.width] for pin in there}}
+    module = {"ports": {name: {"bits": [*range(width)]} for name, width in ports.items()}}
+    assert not device.pins or sum(ports.values()) <= len(device.pins)
+    if device.pins:
+        with pytest.raises(Failure, match=f"has {sum(ports.values())} pins, 3 of the chip are listed"):
+            device.family.any_pins(device.pins[:3], lambda: module)
 
 
 @pytest.mark.parametrize("page", [pages.README, parts_report.PAGE], ids=lambda page: page.name)

@@ -70,7 +70,7 @@ DEVICES = {
             target_mhz=100,
             pins=(
                 *(52, 35, *range(25, 35), *range(36, 43), 48, 49, 51),
-                *(*range(53, 58), 63, *range(68, 78), *range(79, 87)),
+                *(*range(53, 58), 63, *range(68, 78), *range(79, 87), 11, *range(13, 21)),
             ),
         ),
         Device(

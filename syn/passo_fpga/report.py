@@ -20,6 +20,7 @@ from threading import Lock
 from typing import Any, NamedTuple
 
 from passo.console import Estimate, console, stages
+from passo.failure import Failure
 from passo.output import write_json
 from passo.toolchain import paths
 
@@ -110,7 +111,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         report = measure(
             list(dict.fromkeys(goals if options.quick else goals + others)), splits=not options.quick
         )
-    except ToolError as error:
+    except (ToolError, Failure) as error:
         print(error, file=sys.stderr)
         return 1
     if whole:

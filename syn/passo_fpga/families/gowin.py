@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import as_file, files
 
+from passo.failure import Failure
+
 from passo_fpga.families.family import PLACED, Family, Module, Pin, Possible, Top
 
 # Configuration functions of pins that stay active unless the packer releases them. Those of the other
@@ -32,8 +34,15 @@ class _Gowin(Family):
         return ["--vopt", f"cst={pins}", "--write", PLACED]
 
     def any_pins(self, numbers: Sequence[int], top: Top) -> str:
-        """A pin for each port; SCLK on the clock network."""
+        """A pin for each port; SCLK on the clock network.
+
+        Raises:
+            Failure: There are fewer pins.
+        """
         module = top()
+        wanted = sum(len(port["bits"]) for port in module["ports"].values())
+        if wanted > len(numbers):
+            raise Failure(f"the core has {wanted} pins, {len(numbers)} of the chip are listed in devices.py")
         first, second, *others = numbers
         fixed, rest = {"clk": first, "spi_sclk": second}, iter(others)
         lines = []
