@@ -140,7 +140,7 @@ def test_core_gets_the_parameters_of_its_device(board: Board) -> None:
     """Through the top; and in the report."""
     for name in (*board.device.core, "TRACKERS", "TRACKED"):
         assert re.search(rf"\.{name}\s*\({name}\)", TOP.read_text())
-    parameters = core(board.device, (1, board.axes)).parameters
+    parameters = core(board.device, size=(1, board.axes)).parameters
     assert parameters == {"CHANNELS": 1, "AXES": board.axes, **board.device.core}
     assert board.device.core.items() <= board.parameters().items()
 

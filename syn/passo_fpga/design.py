@@ -66,9 +66,19 @@ class Design:
         return int(self.parameters.get(name, default))
 
 
-def core(device: Device, size: tuple[int, int], top: str = SPI, parts: tuple[str, ...] = ()) -> Design:
-    """The core alone behind one of its host interfaces, with its ports as pins; `size`: channels, axes."""
+def core(
+    device: Device,
+    top: str = SPI,
+    size: tuple[int, int] = (1, 4),
+    parts: tuple[str, ...] = (),
+    without: tuple[str, ...] = (),
+) -> Design:
+    """The core alone behind one of its host interfaces, with its ports as pins, but for those it is without.
+
+    `size`: channels, axes.
+    """
     channels, axes = size
     parameters = {"CHANNELS": channels, "AXES": axes, **device.core, **{part.upper(): 1 for part in parts}}
     name = "-".join([device.name, f"{channels}x{axes}", *parts])
-    return Design(name if top == SPI else f"{name}-{top.removeprefix('passo_')}", device, top, parameters)
+    name = name if top == SPI else f"{name}-{top.removeprefix('passo_')}"
+    return Design(name, device, top, parameters, left_out=without)

@@ -37,9 +37,9 @@ PARTS = (*PORTS, TRACKED)
 def design(device: Device, axes: int, part: str = "") -> Design:
     """The core with a part and what that needs, or with none; of "tracked" half of the axes have no lines."""
     if part == TRACKED:
-        made = core(device, (1, axes), parts=("trackers",))
+        made = core(device, size=(1, axes), parts=("trackers",))
         return replace(made, name=f"{made.name}-{part}", parameters={**made.parameters, "TRACKED": axes // 2})
-    return core(device, (1, axes), parts=tuple(name for name in (part, NEEDS.get(part)) if name))
+    return core(device, size=(1, axes), parts=tuple(name for name in (part, NEEDS.get(part)) if name))
 
 
 def axes_of(part: str) -> int:

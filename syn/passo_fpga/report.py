@@ -53,6 +53,7 @@ class Key(NamedTuple):
     top: str
     size: tuple[int, int]  # channels, axes
     parts: tuple[str, ...] = ()
+    without: tuple[str, ...] = ()  # ports, if the package has fewer pins
 
 
 @dataclass(frozen=True)
@@ -65,11 +66,12 @@ class Goal:
     minimum_mhz: int
     size: int
     parts: tuple[str, ...] = ()
+    without: tuple[str, ...] = ()
 
     @property
     def key(self) -> Key:
         """Of the core."""
-        return Key(self.device, SPI, (1, self.axes), self.parts)
+        return Key(self.device, SPI, (1, self.axes), self.parts, self.without)
 
 
 GOALS = (
@@ -78,7 +80,7 @@ GOALS = (
     Goal("hx8k", 3, 115, 105, 4500, boards_report.PARTS),
     Goal("hx8k", 3, 105, 95, 5700, WHOLE),
     Goal("up5k", 6, 49, 47, 5280),
-    Goal("up5k", 3, 42, 40, 4600, boards_report.PARTS),
+    Goal("up5k", 3, 42, 40, 4600, boards_report.PARTS, ("irq", "running", "spi_miso_enable")),
     Goal("ecp5-25", 6, 190, 180, 6000),
     Goal("gw1nr-9c", 6, 100, 90, 8640),
     Goal("gw1nr-9c", 3, 90, 84, 5000, boards_report.PARTS),
@@ -157,7 +159,7 @@ def measure(wanted: Sequence[Key], splits: bool) -> dict[str, Any]:
     tell = stages()
     devices = list(dict.fromkeys(DEVICES[key.device] for key in wanted))
     prepare(dict.fromkeys(program for device in devices for program in device.family.programs), tell)
-    designs = {key: core(DEVICES[key.device], key.size, key.top, key.parts) for key in wanted}
+    designs = {key: core(DEVICES[key.device], *key[1:]) for key in wanted}
     named = {device.name for device in devices} if splits else set()
     hierarchical = {name: _hierarchical(name, SPLIT_SIZE) for name in SPLIT_DEVICES if name in named}
     channels = [_hierarchical(CHANNEL_DEVICE, (number, 1)) for number in (1, 2) if CHANNEL_DEVICE in named]
@@ -203,7 +205,7 @@ def measure(wanted: Sequence[Key], splits: bool) -> dict[str, Any]:
 
 
 def _hierarchical(name: str, size: tuple[int, int]) -> Design:
-    design = core(DEVICES[name], size)
+    design = core(DEVICES[name], size=size)
     return replace(design, name=f"{design.name}-split", flatten=False)
 
 
@@ -238,7 +240,7 @@ def _words(placed: Placed) -> str:
 
 
 def _row(design: Design, key: Key, placed: Sequence[Placed]) -> dict[str, Any]:
-    device, top, (channels, axes), parts = key
+    device, top, (channels, axes), parts, _ = key
     made = cells(design)
     # a seed that nextpnr cannot place or route counts as 0 MHz
     reached = [run.main_clock[0] if run.fits else 0.0 for run in placed]
