@@ -65,11 +65,15 @@ class Machine:
         self.pins[pin] = levels
         self.engine.set(pin, levels)
 
-    def move(self, steps: list[int], gap: int) -> None:
-        """Repeat a line of these steps, with a substep every `gap` clocks."""
+    def queue(self, steps: list[int], gap: int) -> None:
+        """Queue a line of these steps that repeats, with a substep every `gap` clocks."""
         line = Line(max(map(abs, steps)), tuple(steps), endless=True)
         self.channel.push_lines([to_line(line)])
         self.channel.push_ramps([to_ramp(Ramp(ONE // gap, 0)), to_ramp(Ramp(ONE // gap, 60_000))])
+
+    def move(self, steps: list[int], gap: int) -> None:
+        """Begin with such a line."""
+        self.queue(steps, gap)
         self.channel.start()
         self.engine.run(400)
 

@@ -114,8 +114,7 @@ def check_end_endless(machine: Machine) -> None:
 def wait_for_sync(machine: Machine, steps: list[int]) -> None:
     """Repeat a line of these steps from the next edge of `sync` on."""
     machine.link.write(r.ADDRESS_RUN, 1 << r.RUN_RUN_LSB | 1 << r.RUN_WAIT_SYNC_LSB)
-    machine.channel.push_lines([to_line(Line(8, tuple(steps), endless=True))])
-    machine.channel.push_ramps([to_ramp(Ramp(ONE // 20, 0)), to_ramp(Ramp(ONE // 20, 60_000))])
+    machine.queue(steps, 20)
     machine.engine.run(600)
     assert machine.channel.state().state == State.ARMED
 

@@ -102,6 +102,11 @@ class Motions:
         channel.push_lines([to_line(line) for line in lines])
         channel.push_ramps([to_ramp(ramp) for ramp in ramps])
 
+    def run(self, clocks: int) -> None:
+        """Let time pass."""
+        while clocks > 0:
+            clocks -= self.engine.run(clocks)
+
     def see(self) -> None:
         """Take the events of the pins."""
         self.events = np.concatenate([self.events, self.engine.drain()])

@@ -69,11 +69,6 @@ class Timings(Motions):
             assert level[0] == flag.step_inverted, f"{where}: STEP at rest"
             assert channel.positions()[axis] == 0, f"{where}: position"
 
-    def run(self, clocks: int) -> None:
-        """Let time pass."""
-        while clocks > 0:
-            clocks -= self.engine.run(clocks)
-
 
 def substep_gap(ramps: list[Ramp]) -> int:
     """From the first substep to the second."""
