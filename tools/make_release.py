@@ -82,7 +82,8 @@ def tested() -> str:
         found = list(re.finditer(promise["figure"], git("show", f"HEAD:{page}")))
         if not found:
             raise Failure(f"{page}: no figure of '{promise['text']}'; see {short(PROMISES)}")
-        result = promise["result"].format(*found[0].groups(), count=len(found))
+        results = [promise["result"].format(*figure.groups(), count=len(found)) for figure in found]
+        result = "; ".join(dict.fromkeys(results))
         date = git("log", "-1", "--format=%cs", "HEAD", "--", page)
         rows.append(
             f"| {promise['text']} | `{promise['command']}` | {result} | {date} | [{page}](source/{page}) |"
