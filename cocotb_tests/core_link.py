@@ -12,7 +12,7 @@ from cocotb_tests.helpers.core_bench import V_MAX, Core, CoreChannel, Line, PinT
 from cocotb_tests.helpers.core_expected import due, totals
 from cocotb_tests.helpers.core_frames import GAP, ack, everything, frames, refusals, request
 from cocotb_tests.helpers.core_moves import a_motion
-from cocotb_tests.helpers.shapes import loaded_table
+from tests.helpers.closed_form import loaded_table
 
 SNAPSHOT_CLOCKS = 68  # at most, from the fall of chip select to the clock that the positions are of
 

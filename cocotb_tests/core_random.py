@@ -126,7 +126,8 @@ class Session:
         ramps = [self._ramp(axes.velocity, random.choice([0, 1, random.randint(1, 12)]))]
         for _ in range(random.choice([0, 0, 1, 1, 2])):
             ramps.append(self._ramp(axes.velocity, random.choice([0, 1, 2, random.randint(1, 12)])))
-        ramps.append(replace(self._ramp(0, random.choice([0, random.randint(1, 9)])), v_end=0, last=True))
+        end = self._ramp(0, random.choice([0, random.randint(1, 9)]))
+        ramps.append(replace(end, velocity_end=0, last=True))
         total = distance(ramps, core.tick)
         motion = Motion([], ramps, 1)
         if random.random() < 0.15:
@@ -275,7 +276,7 @@ class Session:
         if random.random() < 0.5:
             motion.lines[-1] = replace(motion.lines[-1], last=False, endless=random.random() < 0.5)
         if random.random() < 0.5:
-            motion.ramps[-1] = replace(motion.ramps[-1], last=False, v_end=random.randint(0, V_MAX))
+            motion.ramps[-1] = replace(motion.ramps[-1], last=False, velocity_end=random.randint(0, V_MAX))
         actions: list[Callable[[], None]] = [
             axes.channel.stop,
             axes.channel.abort,

@@ -52,7 +52,8 @@ Exclusions = Sequence[Exclusion]
 
 def run_tests() -> int:
     """Run the tests with coverage; return the exit status of pytest."""
-    command = [sys.executable, "-m", "pytest", "cocotb_tests", "-k", SELECTION, "-q"]
+    jobs = ["-n", str(os.cpu_count()), "--dist", "worksteal"]
+    command = [sys.executable, "-m", "pytest", "cocotb_tests", "-k", SELECTION, "-q", *jobs]
     return subprocess.run(command, cwd=paths.root, env={**os.environ, COVERAGE_VARIABLE: "1"}).returncode
 
 

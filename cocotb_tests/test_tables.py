@@ -9,11 +9,13 @@ import pytest
 from cocotb.handle import HierarchyObject
 from passo import registers as r
 from passo.cocotb.clocks import Clocks, read
+from passo.registers import Shape
 
 from cocotb_tests.helpers.bench import Bench, rng
 from cocotb_tests.helpers.runner import run
-from cocotb_tests.helpers.shapes import POINTS, Shape, loaded_table
+from tests.helpers.closed_form import loaded_table
 
+POINTS = 256
 TABLES = [shape for shape in Shape if shape != Shape.LINEAR]
 
 # Only configuration of the FPGA initializes the tables, not reset: tests that need the initial contents come

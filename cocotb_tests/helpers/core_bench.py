@@ -31,10 +31,11 @@ from passo.host import Channel, read_parameters
 from passo.judge import COLUMNS, Judge
 from passo.link import Link
 from passo.plan import Plan
+from passo.registers import Shape
 
-from cocotb_tests.helpers.ramps import ONE, V_MAX, Ramp
-from cocotb_tests.helpers.shapes import Shape
 from tests.helpers import closed_form
+from tests.helpers.closed_form import HALF as V_MAX
+from tests.helpers.closed_form import ONE
 
 __all__ = ["ONE", "V_MAX", "Core", "CoreChannel", "Line", "PinTiming", "Ramp", "Shape", "core_test"]
 
@@ -48,14 +49,21 @@ class Line(closed_form.Line):
         return [self.last | self.endless << 1 | directions << 8, self.substeps, *map(abs, self.steps)]
 
 
+class Ramp(closed_form.Ramp):
+    """A ramp command."""
+
+    def words(self) -> list[int]:
+        """What is pushed."""
+        control = self.last | self.now << 1 | self.mirror << 2 | self.shape << 4
+        pairs = (self.velocity_end >> 32 << 16 | control, self.velocity_end & 0xFFFFFFFF)
+        return [*pairs, self.ticks, self.progress_step >> 32, self.progress_step & 0xFFFFFFFF]
+
+
 def planned(plan: Plan, axes: int) -> tuple[Line, list[Ramp]]:
     """A plan as commands."""
     signs = [-1 if plan.line.directions >> axis & 1 else 1 for axis in range(axes)]
     steps = tuple(sign * plan.line.steps[axis] for axis, sign in enumerate(signs))
-    ramps = [
-        Ramp(c.velocity_end, c.ticks, Shape(c.shape), c.mirror, c.last, c.now, c.progress_step)
-        for c in plan.ramps
-    ]
+    ramps = [Ramp(c.velocity_end, c.ticks, Shape(c.shape), c.mirror, c.last, c.now) for c in plan.ramps]
     return Line(plan.line.substeps, steps, plan.line.last), ramps
 
 

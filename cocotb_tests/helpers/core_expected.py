@@ -1,43 +1,21 @@
 # SPDX-License-Identifier: MIT
-"""When the steps of a motion are due, from the recurrences of docs/architecture.md, clock by clock."""
+"""When the steps of a motion are due."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 
-from cocotb_tests.helpers.core_bench import ONE, Line, Ramp
-from cocotb_tests.helpers.ramps import velocities
-
-
-def substeps(ramps: Iterable[Ramp], tick: int) -> Iterator[int]:
-    """The enabled clock of each substep; the first clock of a motion is 1."""
-    phase, clock = ONE // 4, 0
-    for velocity in velocities(ramps):
-        for _ in range(tick):
-            clock += 1
-            phase += velocity
-            if phase >= ONE:
-                phase -= ONE
-                yield clock
+from cocotb_tests.helpers.core_bench import Line, Ramp
+from tests.helpers.closed_form import step_clocks, substep_clocks
 
 
-def distance(ramps: Iterable[Ramp], tick: int) -> int:
-    """Substeps of a profile."""
-    return sum(1 for _ in substeps(ramps, tick))
+def distance(ramps: Sequence[Ramp], tick: int) -> int:
+    """Substeps of a profile; `tick` in clocks."""
+    return len(substep_clocks(ramps, tick.bit_length() - 1))
 
 
-def due(lines: Sequence[Line], ramps: Iterable[Ramp], tick: int) -> list[list[int]]:
-    """For each axis the enabled clocks of its steps."""
-    clocks = substeps(ramps, tick)
-    steps: list[list[int]] = [[] for _ in lines[0].steps]
-    for line in lines:
-        m = line.substeps
-        e = [m // 2] * len(steps)
-        for _, clock in zip(range(m), clocks, strict=False):
-            for axis, n in enumerate(line.steps):
-                e[axis] += abs(n)
-                if e[axis] >= m:
-                    e[axis] -= m
-                    steps[axis].append(clock)
-    return steps
+def due(lines: Sequence[Line], ramps: Sequence[Ramp], tick: int) -> list[list[int]]:
+    """For each axis the enabled clocks of its steps; the first clock of a motion is 1."""
+    axes, tick_log2 = len(lines[0].steps), tick.bit_length() - 1
+    return [[clock for clock, _ in step_clocks(lines, ramps, tick_log2, axis)] for axis in range(axes)]
 
 
 def totals(lines: Sequence[Line]) -> list[int]:

@@ -39,7 +39,6 @@ _TOPS = paths.cocotb_tests / "tops"
 _PROBES = paths.cocotb_tests / "probes"
 CORE_TOP = "passo_spi_top"
 BUS_TOPS = ("passo_wishbone", "passo_axi_lite")
-WHOLE_CORES = (CORE_TOP, *BUS_TOPS)
 ONE_CHANNEL = {"CHANNELS": 1, "AXES": 3, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 5, "RAMP_QUEUE_LOG2": 4}
 WITH_INPUTS = ONE_CHANNEL | {"INPUTS": 1}
 BUS_CORE = {"CHANNELS": 1, "AXES": 2, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 5, "RAMP_QUEUE_LOG2": 4}
@@ -59,16 +58,15 @@ def run(
     simulator: str = "verilator",
     *,
     environment_variables: Mapping[str, str] | None = None,
-    internals: Sequence[str] = (),
     netlist: bool = False,
 ) -> None:
     """Run the cocotb tests of `module` in `toplevel`, built with `parameters`; AssertionError if one fails.
 
     `module` is the `__name__` of the Python module. `toplevel` is a module of `cocotb_tests/tops/`, or of
     `rtl/` with what `cocotb_tests/probes/` has for it included at its end; it is built again only when one of
-    the sources below it has changed. Tests see its pins and the `internals`, each MODULE.SIGNAL: what can be
-    seen takes long to compile, all of a netlist an hour. With `netlist` the core is what synthesis makes of
-    it for an iCE40, with exactly these parameters.
+    the sources below it has changed. Tests see its pins and nothing below: what can be seen takes long to
+    compile, all of a netlist an hour. With `netlist` the core is what synthesis makes of it for an iCE40,
+    with exactly these parameters.
     """
     os.environ.update(environment())
     parameters = dict(parameters or {})
@@ -82,7 +80,7 @@ def run(
     test_folder.mkdir(parents=True, exist_ok=True)
 
     with _lock(folder):
-        _build(simulator, toplevel, parameters, rtl, waves, coverage, internals, folder)
+        _build(simulator, toplevel, parameters, rtl, waves, coverage, folder)
 
     print(f"{SEED_VARIABLE}={seed()}")
     results = test_folder / "results.xml"
@@ -168,7 +166,6 @@ def _build(
     rtl: Path,
     waves: bool,
     coverage: bool,
-    internals: Sequence[str],
     folder: Path,
 ) -> None:
     sources = _sources(toplevel, rtl)
@@ -181,7 +178,7 @@ def _build(
         arguments += ["--coverage-line", "--coverage-toggle"]
     if netlist and simulator == "verilator":
         arguments += ["-Wno-fatal", "-Wno-lint"]  # the models of the cells are not ours to warn about
-    digest = hashlib.sha256(Path(__file__).read_bytes() + repr(internals).encode())
+    digest = hashlib.sha256(Path(__file__).read_bytes())
     for path in [*sources, *sorted(rtl.glob("*.vh")), *sorted(_PROBES.glob("*.vh"))]:
         digest.update(str(path).encode() + path.read_bytes())
     stamp = folder / "built"
@@ -189,7 +186,7 @@ def _build(
         return
 
     stamp.unlink(missing_ok=True)
-    runner = _Verilator(internals) if simulator == "verilator" else get_runner(simulator)
+    runner = _Verilator() if simulator == "verilator" else get_runner(simulator)
     runner.build(
         sources=sources,
         build_args=arguments,
@@ -214,10 +211,6 @@ class _Verilator(Verilator):
     cocotb's main program is not part of it: it allocates the model, so that it has to know how large that is.
     """
 
-    def __init__(self, internals: Sequence[str]) -> None:
-        super().__init__()
-        self._internals = internals
-
     def _runtime(self) -> Path:
         versions = [f"{package}{version(package)}" for package in ("verilator", "cocotb")]
         kinds = [kind for kind in ("waves", "coverage") if f"-{kind}" in self.build_dir.name]
@@ -228,10 +221,8 @@ class _Verilator(Verilator):
         verilate, make = super()._build_command()
         if "coverage" not in self.build_dir.name:
             verilate = [part for part in verilate if part != "--public-flat-rw"]
-            seen = [f"{self.hdl_toplevel}.*", *self._internals]
-            lines = ('public_flat_rw -module "{}" -var "{}"\n'.format(*signal.split(".")) for signal in seen)
             public = self.build_dir / "public.vlt"
-            public.write_text("".join(["`verilator_config\n", *lines]))
+            public.write_text(f'`verilator_config\npublic_flat_rw -module "{self.hdl_toplevel}" -var "*"\n')
             verilate.insert(verilate.index(str(self.sources[0])), str(public))
             # more takes longer than it saves
             make = [*make, f"OPT_FAST={'-O0' if 'netlist' in self.build_dir.name else '-O1'}"]

@@ -7,10 +7,9 @@ tables come from their formulas, and a substep's clock is a division instead of 
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from math import cos, exp, log1p, pi, sin
 
 from passo.registers import Shape
-
-from cocotb_tests.helpers.shapes import loaded_table
 
 ONE = 1 << 48
 HALF = 1 << 47
@@ -47,6 +46,35 @@ class Ramp:
         if self.ticks > SHAPE_ONE:
             return ONE // self.ticks
         return min((2 * ONE + self.ticks) // (2 * self.ticks), ONE - 1)
+
+
+def _logistic(x: float) -> float:
+    return 1 / (1 + exp(-x))
+
+
+def _cosine(u: float) -> tuple[float, float]:
+    """The shape, and the area below it from 0 to u."""
+    return (1 - cos(pi * u)) / 2, (u - sin(pi * u) / pi) / 2
+
+
+def _sigmoid(u: float) -> tuple[float, float]:
+    low, high = _logistic(-5), _logistic(5)
+    area = log1p(exp(5 * (2 * u - 1))) - log1p(exp(-5))
+    return (_logistic(5 * (2 * u - 1)) - low) / (high - low), (area / 10 - low * u) / (high - low)
+
+
+def loaded_table(shape: Shape) -> list[int]:
+    """The 257 points of a shape after configuration."""
+    if shape == Shape.EASE:
+        return [k * k for k in range(257)]
+    curve = {Shape.COSINE: _cosine, Shape.SIGMOID: _sigmoid}[shape]
+    table: list[int] = []
+    for k in range(129):
+        value, area = curve(k / 256)
+        # the area below the lines: all points so far, less half of the last
+        table.append(round(65536 * (256 * area + value / 2)) - sum(table))
+    table[128] = 32768
+    return table + [65536 - point for point in reversed(table[:128])]
 
 
 Tables = Mapping[int, Sequence[int]]  # of the points of each shape, with the last one, which is 2^16
@@ -93,10 +121,10 @@ def substep_clocks(ramps: Sequence[Ramp], tick_log2: int, tables: Tables = TABLE
     return clocks
 
 
-def line_steps(line: Line, axis: int) -> list[int]:
+def line_steps(line: Line, axis: int) -> Iterator[int]:
     """The substep of the line, from 1, on which each step of the axis is made."""
     n, m = abs(line.steps[axis]), line.substeps
-    return [-((m // 2 - k * m) // n) for k in range(1, n + 1)]
+    return (-((m // 2 - k * m) // n) for k in range(1, n + 1))
 
 
 def step_clocks(
