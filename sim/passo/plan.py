@@ -8,6 +8,7 @@ from typing import Any
 
 from passo import move_forms
 from passo.build import Parameters
+from passo.failure import Portable
 from passo.move_forms import ALPHA_MAX, ALPHA_MIN, ALPHA_ONE, SHAPED, USER, USER_BANK, WHOLE_MAX, Key, Points
 from passo.moves import Channels, Move, MoveFile, MoveFileError
 from passo.native import ffi, planner
@@ -18,7 +19,7 @@ Q48 = 1 << 48
 ALPHA_RESET = move_forms.ALPHA_RESET * ALPHA_ONE  # alpha of the sigmoid table after reset
 
 
-class PlanError(Exception):
+class PlanError(Portable):
     """The planner rejected a move; `name` is the name of an enum passo_plan_error."""
 
     def __init__(self, name: str, text: str):

@@ -19,6 +19,7 @@ from cocotb.triggers import ValueChange
 
 from passo import moves
 from passo.cocotb.clocks import Clocks, Signal, read
+from passo.failure import Portable
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,7 @@ class PinTiming:
         return moves.PinTiming(*(max(1, t) for t in (self.high, self.low, self.setup, self.hold)))
 
 
-class PulseError(AssertionError):
+class PulseError(Portable, AssertionError):
     """A pin broke its timing; axis -1 is all pins of one kind."""
 
     def __init__(self, clock: int, axis: int, signal: str, expected: str, actual: object) -> None:

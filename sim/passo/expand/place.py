@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from passo.failure import BadInputError
+from passo.failure import BadInputError, Portable
 
 MOST = 20  # bad lines that are reported
 NIST, LINUXCNC, FANUC, BOTH = "NIST", "LinuxCNC", "Fanuc", "NIST, LinuxCNC"
@@ -24,7 +24,7 @@ class Place:
         return f"{self.path}:{self.line}"
 
 
-class LineError(ValueError):
+class LineError(Portable, ValueError):
     """What is wrong with a line, by which norm; whoever knows its place makes an ExpandError of it."""
 
     def __init__(self, reason: str, norm: str = LINUXCNC):
