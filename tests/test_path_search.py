@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: MIT
 """The search for the worst path: what it kept, a short search, and that it finds a planner that is wrong."""
 
+import itertools
 from dataclasses import replace
 
 import pytest
 from passo.path import PathSettings
 
 from benchmarks import path_adversary, path_measure
-from benchmarks.path_measure import KINDS, Measured, measure
+from benchmarks.path_measure import KINDS, Measured, measure, play
 from benchmarks.path_page import PROFILES, page
-from benchmarks.path_paths import case_of, read_cases
+from benchmarks.path_paths import Case, Piece, case_of, read_cases
 
 KEPT = read_cases(path_adversary.WORST)
 
@@ -18,6 +19,16 @@ KEPT = read_cases(path_adversary.WORST)
 def test_a_kept_case_is_within_all_bounds(name: str) -> None:
     """Time, steps and underruns of paths that were wrong once."""
     assert measure(KEPT[name]).faults == {}
+
+
+@pytest.mark.parametrize("bend", [2.0, 3.4, 6.0])
+def test_slight_corners_keep_the_jerk(bend: float) -> None:
+    """Of axes that turn and speed up: to one side and to both, in directions of one axis and of all."""
+    for bends, heading, slope in itertools.product([(bend,), (bend, -bend)], [0.0, 45.0], [0.0, 0.5]):
+        piece = Piece(12, (20.0,), bends, slopes=(slope,))
+        measured = Measured()
+        play(Case("fast", (piece,), "jerk", 48, 8000, heading), measured)
+        assert measured.faults == {}, (bends, heading, slope)
 
 
 def weaker(share: float, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -22,6 +22,8 @@
 #define TURNS 3u
 /* A twentieth of the deviation (UQ32.16 substeps), UQ.8 substeps. */
 #define OFF_PART (20u << 8)
+/* From this change of the direction on, an axis has the ramp on one side of a lone corner, or little of both. */
+#define SHARP (PASSO_PATH_ONE / 64 * 13)
 /* An axis with less than this part of the direction, or of its change, is hardly one of the curve. */
 #define SMALL 8u
 
@@ -169,9 +171,9 @@ static bool turns_back(const struct passo_path_planner *path, const int32_t *uni
  * `e` show a jerk of `0.75 k v^2 / w - 8 e / w^3` over a time w, so `k v^3 sqrt(k / e) / 11` at most; `e` is
  * that of chords, and of lines that are merged. Half of the jerk is for the ramps in the curves. */
 static uint64_t square_between(const struct passo_path_planner *path, const struct passo_path_corner *corner,
-    const int32_t *unit, uint64_t turn, uint64_t jerk)
+    bool back, uint64_t turn, uint64_t jerk)
 {
-	if (path->at.turns == 0 || !corner->bends_before || !turns_back(path, unit))
+	if (path->at.turns == 0 || !corner->bends_before || !back)
 		return PASSO_PATH_SQUARE_MAX;
 	const uint64_t last = passo_mul_div(path->at.turn, corner->over, path->at.over);
 	const uint64_t radius = radius_of(corner->over, turn + last);
@@ -183,11 +185,11 @@ static uint64_t square_between(const struct passo_path_planner *path, const stru
 
 /* The curve of the new line, for the next corner. */
 static void keep_turn(struct passo_path_planner *path, const struct passo_path_corner *corner,
-    const int32_t *unit, uint64_t turn)
+    const int32_t *unit, bool back, uint64_t turn)
 {
 	struct passo_path_place *at = &path->at;
 
-	at->turns = !corner->bends_behind ? 0 : at->turns == 0 || turns_back(path, unit) ? 1 : at->turns + 1;
+	at->turns = !corner->bends_behind ? 0 : at->turns == 0 || back ? 1 : at->turns + 1;
 	at->turn = turn;
 	at->over = corner->over;
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
@@ -215,29 +217,45 @@ static uint8_t lacking_over(const struct passo_path_planner *path, const struct 
 }
 #endif
 
+#ifndef PASSO_WITHOUT_JERK_PATHS
+/* Of a lone corner behind one to the other side, the area as of radius^2. Both show a jerk of
+ * `(c (3 w v - d) - 8 e) / w^3` over a time w, `c` the mean of both changes of the direction, `d` the way
+ * between, so `4 c v^3 / (d + 8 e / c)^2` at most; `8 e / c` is the length of the rounding. */
+static uint64_t area_between(const struct passo_path_planner *path, uint64_t over, uint64_t turn)
+{
+	over += passo_path_straight(path) << (PASSO_PATH_UNIT_BITS - 16);
+	return radius_of(over, PASSO_PATH_ONE) * radius_of(over, path->at.turn + turn);
+}
+#endif
+
 uint64_t passo_path_shaped_corner(struct passo_path_planner *path, const struct passo_path_corner *corner,
     const int32_t *unit, struct passo_path_item *item)
 {
-	static const uint32_t JERK_PARTS[] = {JERK_EXCESS, 4, 2};
+	/* 32nds for the turn: of a curve, by its quarters (of a sharp corner: 2), and of a lone corner */
+	static const uint8_t JERK_PARTS[] = {32 / JERK_EXCESS, 8, 16, 12};
 	struct passo_path_item *last = passo_path_item(path, path->added - 1);
 	const bool soft = passo_path_is_soft(path), bends = corner->bends_before || corner->bends_behind;
 	const uint64_t turn = passo_isqrt64(corner->turn);
 	const uint64_t radius = radius_of(corner->over, turn), jerk = jerk_of(path, corner, turn);
-	const uint64_t needed = passo_path_larger(
-	    corner->bends_before ? wanted(last) : 0, corner->bends_behind ? wanted(item) : 0);
+	const uint64_t before = wanted(last), behind = wanted(item);
+	const uint64_t needed =
+	    passo_path_larger(corner->bends_before ? before : 0, corner->bends_behind ? behind : 0);
 	const uint64_t weakest = weakest_of(path, unit);
 	const uint64_t across = passo_mul_div(needed, turn, corner->over);
-	uint32_t quarters = lacking(across, weakest);
-	uint64_t most = UINT64_MAX, fastest = UINT64_MAX;
+	uint32_t quarters = bends ? lacking(across, weakest) : turn < SHARP ? 3 : 2;
+	uint64_t most = UINT64_MAX, fastest = UINT64_MAX, area = radius * radius;
 
-	if (soft && bends) {
-		while (quarters < 2 && soft_square(radius * radius, jerk / JERK_PARTS[quarters]) < needed)
+#ifndef PASSO_WITHOUT_JERK_PATHS
+	const bool back = turns_back(path, unit);
+
+	if (!bends && back && path->at.turn > 0)
+		area = passo_path_smaller(area, area_between(path, corner->over, turn));
+#endif
+	if (soft) {
+		while ((fastest = soft_square(area, jerk / 32 * JERK_PARTS[quarters])) < needed && quarters < 2)
 			quarters++;
-		fastest = soft_square(radius * radius, jerk / JERK_PARTS[quarters]);
 		most = soft_slope(path, radius, jerk, passo_path_smaller(fastest, needed),
 		    across > weakest / EXCESS ? weakest : PASSO_PATH_SQUARE_MAX >> 2);
-	} else if (soft) {
-		fastest = soft_square(radius * radius, jerk / 2);
 	}
 	if (corner->bends_before)
 		ease(path, last, quarters, most);
@@ -245,15 +263,18 @@ uint64_t passo_path_shaped_corner(struct passo_path_planner *path, const struct 
 		ease(path, item, quarters, most);
 	const uint64_t square = passo_path_smaller(square_by(path, corner, unit, item), fastest);
 #ifndef PASSO_WITHOUT_JERK_PATHS
-	if (soft && !bends) {
-		const uint64_t passed =
-		    passo_path_smaller(square, passo_path_smaller(wanted(last), wanted(item)));
-
-		item->over = lacking_over(path, corner, unit, item, passed);
-	}
 	if (soft) {
-		const uint64_t between = square_between(path, corner, unit, turn, jerk);
-		keep_turn(path, corner, unit, turn);
+		const uint64_t between = square_between(path, corner, back, turn, jerk);
+		const uint64_t passed = passo_path_smaller(square, passo_path_smaller(before, behind));
+
+		if (!bends)
+			item->over = lacking_over(path, corner, unit, item, passed);
+		if (quarters == 3) { /* ramps that end or begin there have jerk at their ends */
+			item->jerk -= item->jerk / 4;
+			if (last->eased < 2) /* no more than certain() says */
+				last->jerk -= last->jerk / 4;
+		}
+		keep_turn(path, corner, unit, back, turn);
 		return passo_path_smaller(square, between);
 	}
 #endif

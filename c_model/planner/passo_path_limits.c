@@ -214,6 +214,9 @@ enum passo_plan_error passo_path_measure(struct passo_path_planner *path, const 
 	limit_line(path, unit, move->feed, item);
 	if (path->rest) {
 		passo_path_begin_straight(path);
+#ifndef PASSO_WITHOUT_JERK_PATHS
+		path->at.turn = 0;
+#endif
 		passo_path_begin(path, length, NULL, 0);
 	} else {
 		item->bend = passo_path_limit_corner(path, unit, length, item);
