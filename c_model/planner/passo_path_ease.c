@@ -22,7 +22,8 @@
 #define TURNS 3u
 /* A twentieth of the deviation (UQ32.16 substeps), UQ.8 substeps. */
 #define OFF_PART (20u << 8)
-/* From this change of the direction on, an axis has the ramp on one side of a lone corner, or little of both. */
+/* From this change of the direction on, an axis has the ramp on one side of a lone corner, or little of both.
+ */
 #define SHARP (PASSO_PATH_ONE / 64 * 13)
 /* An axis with less than this part of the direction, or of its change, is hardly one of the curve. */
 #define SMALL 8u
@@ -252,7 +253,8 @@ uint64_t passo_path_shaped_corner(struct passo_path_planner *path, const struct 
 		area = passo_path_smaller(area, area_between(path, corner->over, turn));
 #endif
 	if (soft) {
-		while ((fastest = soft_square(area, jerk / 32 * JERK_PARTS[quarters])) < needed && quarters < 2)
+		while (
+		    (fastest = soft_square(area, jerk / 32 * JERK_PARTS[quarters])) < needed && quarters < 2)
 			quarters++;
 		most = soft_slope(path, radius, jerk, passo_path_smaller(fastest, needed),
 		    across > weakest / EXCESS ? weakest : PASSO_PATH_SQUARE_MAX >> 2);
