@@ -22,8 +22,7 @@
 #define TURNS 3u
 /* A twentieth of the deviation (UQ32.16 substeps), UQ.8 substeps. */
 #define OFF_PART (20u << 8)
-/* From this change of the direction on, an axis has the ramp on one side of a lone corner, or little of both.
- */
+/* With this change of the direction an axis has the ramp on one side of a lone corner, or little of both. */
 #define SHARP (PASSO_PATH_ONE / 64 * 13)
 /* An axis with less than this part of the direction, or of its change, is hardly one of the curve. */
 #define SMALL 8u
