@@ -97,6 +97,24 @@ static uint64_t slope_left(
 	return slope;
 }
 
+/* What the corner at the start of the line leaves of its slope while the path is within the rounding: of the
+ * part that would be level, nothing, so evenly. */
+static uint64_t left_behind(const struct passo_path_planner *path, bool up)
+{
+#ifdef PASSO_WITHOUT_ROUNDING
+	(void)path, (void)up;
+	return UINT64_MAX;
+#else
+	const struct passo_path_item *item = passo_path_item(path, path->planned);
+	const uint64_t turn = (uint64_t)item->turn << 32;
+
+	if ((uint64_t)path->offset >= turn)
+		return UINT64_MAX;
+	const uint64_t flat = passo_path_flat(path, path->planned, path->planned, up, path->passing, false);
+	return passo_mul_div(item->slope, turn - passo_path_smaller(flat, turn), turn);
+#endif
+}
+
 /* What is before the end of the ramps. */
 struct ahead {
 	uint64_t square; /* the lowest that is allowed */
@@ -114,7 +132,8 @@ struct ahead {
 static struct ahead look_ahead(
     const struct passo_path_planner *path, uint64_t length, enum passo_path_need need, bool up)
 {
-	struct ahead ahead = {.square = PASSO_PATH_SQUARE_MAX, .slope = UINT64_MAX, .left = UINT64_MAX};
+	struct ahead ahead = {
+	    .square = PASSO_PATH_SQUARE_MAX, .slope = UINT64_MAX, .left = left_behind(path, up)};
 	const uint64_t square = passo_path_square_of(path->velocity);
 	uint64_t passed = 0;
 
