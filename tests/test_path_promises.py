@@ -46,9 +46,9 @@ def test_a_path_begins_with_its_first_line() -> None:
             pass
 
 
-@pytest.mark.parametrize(("off", "lines"), [(0.1, 1), (0.9, 2), (1.5, 2), (3.0, 2)])
+@pytest.mark.parametrize(("off", "lines"), [(0.1, 1), (0.9, 1), (1.5, 2), (3.0, 2)])
 def test_a_long_line_is_no_farther_off_than_the_tolerance(off: float, lines: int) -> None:
-    """A short one behind it is a part of it only where it goes straight on."""
+    """A short one behind it is a part of it only within that."""
     path = Path(SETTINGS, Parameters())
     path.add((10, 0), 10)
     path.add((10.02, off * TOLERANCE), 10)

@@ -8,8 +8,6 @@
 
 /* Half the arc of a corner of a radian, by the junction deviation: sharper ones have less. */
 #define SHARP 4u
-/* Of the tolerance: a line that is no farther off goes straight on. */
-#define STRAIGHT 4u
 /* A line that takes longer than this part of a second is not merged. */
 #define MERGED_PER_SECOND 128u
 
@@ -109,10 +107,10 @@ static bool ends_straight(const struct passo_path_planner *path)
 #endif
 }
 
-/* Whether a short line goes straight on from the newest one, which is too long to be held back. */
+/* Whether a short line becomes part of the newest one, which is too long to be held back. */
 static bool goes_on(const struct passo_path_planner *path, const struct passo_path_merged *merged)
 {
-	return merged->off < path->tolerance / STRAIGHT
+	return merged->off < path->tolerance
 	    && passo_mul_div(passo_path_clocks(newest(path)), merged->longer, path->at.length)
 	           < path->machine.clock_hz / MERGED_PER_SECOND;
 }
