@@ -107,12 +107,11 @@ static bool ends_straight(const struct passo_path_planner *path)
 #endif
 }
 
-/* Whether a short line becomes part of the newest one, which is too long to be held back. */
-static bool goes_on(const struct passo_path_planner *path, const struct passo_path_merged *merged)
+/* Whether the new line is short: it may become part of one that is too long to be held back. */
+static bool is_short(const struct passo_path_planner *path, const struct passo_path_merged *merged)
 {
-	return merged->off < path->tolerance
-	    && passo_mul_div(passo_path_clocks(newest(path)), merged->longer, path->at.length)
-	           < path->machine.clock_hz / MERGED_PER_SECOND;
+	return passo_mul_div(passo_path_clocks(newest(path)), merged->longer, path->at.length)
+	     < path->machine.clock_hz / MERGED_PER_SECOND;
 }
 
 /* Replaces the newest line by one to a new target, if that is not farther off than the tolerance. */
@@ -123,7 +122,7 @@ static bool merge(struct passo_path_planner *path, const struct passo_path_move 
 	const struct passo_path_merged merged = passo_path_off(path, move->target);
 	if (ends_straight(path) && merged.off > path->substeps_per_mm >> 10) /* 2^-26 mm, in UQ.16 substeps */
 		return false;
-	if (path->open ? merged.off >= path->tolerance : !goes_on(path, &merged))
+	if (merged.off >= path->tolerance || (!path->open && !is_short(path, &merged)))
 		return false;
 	const uint32_t dwell = path->dwell;
 

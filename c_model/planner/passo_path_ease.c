@@ -266,10 +266,13 @@ uint64_t passo_path_shaped_corner(struct passo_path_planner *path, const struct 
 #ifndef PASSO_WITHOUT_JERK_PATHS
 	if (soft) {
 		const uint64_t between = square_between(path, corner, back, turn, jerk);
-		const uint64_t passed = passo_path_smaller(square, passo_path_smaller(before, behind));
 
-		if (!bends)
+		if (!bends) {
+			const uint64_t passed =
+			    passo_path_smaller(square, passo_path_smaller(before, behind));
+
 			item->over = lacking_over(path, corner, unit, item, passed);
+		}
 		if (quarters == 3) { /* ramps that end or begin there have jerk at their ends */
 			item->jerk -= item->jerk / 4;
 			if (last->eased < 2) /* no more than certain() says */
