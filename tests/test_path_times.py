@@ -74,8 +74,8 @@ def test_no_ramp_over_lines_of_unequal_slopes_exceeds_a_limit(name: str) -> None
     assert all(found[name] < bound for name, bound in LIMITS.items()), found
 
 
-@pytest.mark.parametrize("bend", [2.0, 3.0, 4.0])
-def test_a_ramp_over_a_lone_corner_leaves_it_what_it_needs(bend: float) -> None:
+@pytest.mark.parametrize(("bend", "least"), [(2.0, 0.5), (3.0, 0.5), (4.0, 0.5), (5.0, 0.45)])
+def test_a_ramp_over_a_lone_corner_leaves_it_what_it_needs(bend: float, least: float) -> None:
     """Profile jerk, long lines: what the ramp takes of an axis there, and half of v^2 c / l."""
     case = Case("fast", (Piece(15, (7.6,), (bend,)),), "jerk")
     settings = replace(case.settings, polls=FAST_POLLS)
@@ -96,7 +96,7 @@ def test_a_ramp_over_a_lone_corner_leaves_it_what_it_needs(bend: float) -> None:
                 share = along * np.maximum(np.abs(before), np.abs(behind))
                 share += speed**2 * np.abs(behind - before) / over / 2
                 found.append(float(share.max()) / float(settings.axes[0].acceleration))
-    assert 0.5 < max(found) < 1.01
+    assert least < max(found) < 1.01  # the sharper, the more its jerk limits it
 
 
 def arc(chord: float, bend: float, count: int, machine: str = "router", heading: float = 0.0) -> Case:
