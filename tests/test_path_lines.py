@@ -64,6 +64,20 @@ def ends_of(lines: Sequence[Line], settings: PathSettings) -> np.ndarray:
     return np.cumsum([[0] * len(axes), *steps], axis=0) / float(settings.axes[0].steps_per_mm)
 
 
+def left_out(lines: Sequence[Line], settings: PathSettings) -> tuple[int, float]:
+    """The number of ends that are left out, and the farthest of them from its line, in mm. Others are exact."""
+    points = np.array([(0.0,) * len(settings.axes), *(target for target, _ in lines)])
+    ends = ends_of(lines, settings)
+    at = [int(np.abs(points - end).sum(axis=1).argmin()) for end in ends]
+    assert np.abs(points[at] - ends).max() < 1 / FINE and at == sorted(set(at)) and at[-1] == len(lines)
+    farthest = 0.0
+    for first, last in pairwise(at):
+        unit = (points[last] - points[first]) / np.linalg.norm(points[last] - points[first])
+        off = points[first : last + 1] - points[first]
+        farthest = max(farthest, np.linalg.norm(off - np.outer(off @ unit, unit), axis=1).max())
+    return len(points) - len(ends), farthest
+
+
 def test_what_is_left_out_is_within_the_tolerance() -> None:
     """Random bends of tiny lines: all ends are near the lines that replace them; those that stay, exact."""
     merged = 0
@@ -78,16 +92,27 @@ def test_what_is_left_out_is_within_the_tolerance() -> None:
             heading += rng.gauss(0, bend)
             x, y = x + size * math.cos(heading), y + size * math.sin(heading)
             lines.append(((x, y), 10.0))
-        points = np.array([(0.0, 0.0), *(target for target, _ in lines)])
-        ends = ends_of(lines, settings)
-        merged += len(points) - len(ends)
-        at = [int(np.abs(points - end).sum(axis=1).argmin()) for end in ends]
-        assert np.abs(points[at] - ends).max() < 1 / FINE and at == sorted(set(at)) and at[-1] == len(lines)
-        for first, last in pairwise(at):
-            unit = (points[last] - points[first]) / np.linalg.norm(points[last] - points[first])
-            off = points[first : last + 1] - points[first]
-            assert np.abs(off[:, 0] * unit[1] - off[:, 1] * unit[0]).max() <= tolerance + 2 / FINE
+        count, off = left_out(lines, settings)
+        assert off <= tolerance + 2 / FINE
+        merged += count
     assert merged > 500
+
+
+@pytest.mark.parametrize("axes", [1, 2, 3, 8])
+def test_noise_does_not_keep_lines_apart(axes: int) -> None:
+    """Ends on a straight, off by up to a third of the tolerance each way, as rounded coordinates are."""
+    for seed in range(10):
+        rng = np.random.default_rng(random_cases.seed() * 10 + seed)
+        tolerance = 0.001
+        settings = PathSettings((PathAxis(FINE, 20, 1000),) * axes, tolerance=tolerance)
+        unit = rng.normal(size=axes)
+        straight = np.outer(np.arange(1, 201) * 0.01, unit / np.linalg.norm(unit))
+        noise = rng.uniform(-1, 1, straight.shape) * tolerance / 3 / math.sqrt(axes)
+        lines: list[Line] = [(tuple(map(float, point)), 100.0) for point in straight + noise]
+        count, off = left_out(lines, settings)
+        assert off <= tolerance + axes / FINE
+        assert count >= 196
+
 
 
 @pytest.mark.parametrize("share", [0.97, 1.03])

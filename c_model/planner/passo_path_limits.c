@@ -67,6 +67,40 @@ static bool find_direction(const struct passo_path_planner *path, const int64_t 
 	return true;
 }
 
+#ifndef PASSO_WITHOUT_ROUNDING
+/* Directions that pass the end of the last line within the tolerance; whether the new one is among them, and
+ * among those so far. The distance is below that of the unit vectors times the length, which is below the
+ * greatest of the axes that move times the root of their number. */
+static bool narrow(
+    const struct passo_path_planner *path, const int32_t *unit, struct passo_path_merged *merged)
+{
+	const struct passo_path_place *end = &path->at;
+	uint64_t axes = 0;
+	bool within = path->tolerance > 0;
+
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
+		axes += unit[axis] != 0 || end->direction[axis] != 0;
+	const uint64_t root = (uint64_t)passo_isqrt64(axes << 32) + 1;
+	const int64_t most = (int64_t)passo_path_smaller(
+	    passo_mul_div(passo_mul_div(path->tolerance, UINT32_C(1) << 16, root), PASSO_PATH_ONE, end->length),
+	    PASSO_PATH_ONE / 2);
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
+		const int32_t moves = unit[axis] != 0 || end->direction[axis] != 0 ? (int32_t)most : 0;
+		int32_t low = end->direction[axis] - moves, high = end->direction[axis] + moves;
+
+		if (merged->narrowed) {
+			low = low > merged->low[axis] ? low : merged->low[axis];
+			high = high < merged->high[axis] ? high : merged->high[axis];
+		}
+		within = within && unit[axis] >= low && unit[axis] <= high;
+		merged->low[axis] = low;
+		merged->high[axis] = high;
+	}
+	merged->narrowed = true;
+	return within;
+}
+#endif
+
 /* Two bounds, of which the smaller one holds. The last line is off the new one by no more than its end, which
  * adds up. And the path that a line replaces is below a parabola over it, `bulge` x (l - x): if that is so of
  * the last line, it is of the new one, for a parabola that is also above the end of the last one: so it is
@@ -93,6 +127,10 @@ struct passo_path_merged passo_path_off(const struct passo_path_planner *path, c
 	const uint64_t top =
 	    passo_mul_shift(passo_mul_shift(merged.bulge, length, PASSO_PATH_UNIT_BITS), length, 34);
 	merged.off = passo_path_smaller(merged.off, top);
+#ifndef PASSO_WITHOUT_ROUNDING
+	if (passo_path_is_rounded(path) && narrow(path, unit, &merged))
+		merged.off = passo_path_smaller(merged.off, path->tolerance - 1);
+#endif
 	merged.longer = length - end->length;
 	return merged;
 }
