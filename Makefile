@@ -39,10 +39,11 @@ help:
 setup: ## Install what the command and the tests of the model need; other targets install more.
 	@tools/setup.sh
 
+# The tests start Python a thousand times: the first one leaves its bytecode to the others.
 test: ## Lint the sources, then run all tests.
 	@tools/setup.sh dev yosys formal firmware browser web site release vhdl hdl path gcode fuzz cncjs linuxcnc
 	@$(MAKE) lint
-	@$(BIN)/pytest -n $$(($$(nproc) < 8 ? $$(nproc) + 1 : 8)) --dist worksteal # one more: some tests wait
+	@PYTHONDONTWRITEBYTECODE= $(BIN)/pytest -n $$(($$(nproc) < 8 ? $$(nproc) + 1 : 8)) --dist worksteal # one more: some tests wait
 
 demo: setup ## Run the demonstration; writes tables, plots and reports to build/demo/ (a minute).
 	@$(BIN)/passo demo

@@ -23,6 +23,7 @@ pytestmark = pytest.mark.skipif(
 )
 
 
+@pytest.mark.first
 def test_netlist_moves() -> None:
     """Every step on its clock, from the first clock of a motion to the last."""
     run("cocotb_tests.core_motion", TOP, ONE_CHANNEL, SIMULATOR, netlist=True)

@@ -96,6 +96,7 @@ def recipe(one: Shown) -> list[str]:
 
 
 @pytest.mark.parametrize("one", [one for one in TARGETS.values() if not {*one.words} & {*LONG}], ids=str)
+@pytest.mark.first
 def test_a_recipe_of_the_readme_runs(one: Shown) -> None:
     """As a newcomer runs it: the demonstration on both engines, the page, the list of targets."""
     for line in recipe(one):

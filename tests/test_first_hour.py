@@ -14,6 +14,7 @@ from benchmarks import first_hour, hour, page, play
 from benchmarks.first_hour import Figure, most
 
 
+@pytest.mark.first
 def test_the_short_form(monkeypatch: pytest.MonkeyPatch) -> None:
     """Preview and page with a twentieth of the lines, well within their goals; it says so."""
     monkeypatch.setattr(page, "LINES", 4000)

@@ -37,6 +37,8 @@ from tests.helpers.linuxcnc import (
     share_of_wire,
 )
 
+pytestmark = pytest.mark.first  # one LinuxCNC runs at a time
+
 END = [50.0, 50.0, 73.0]
 SCALES = [80.0, 80.0, 400.0]
 PERIOD = 0.001

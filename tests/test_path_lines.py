@@ -65,7 +65,7 @@ def ends_of(lines: Sequence[Line], settings: PathSettings) -> np.ndarray:
 
 
 def left_out(lines: Sequence[Line], settings: PathSettings) -> tuple[int, float]:
-    """The number of ends that are left out, and the farthest of them from its line, in mm. Others are exact."""
+    """The number of ends left out, and how far the farthest is from its line, in mm. The others are exact."""
     points = np.array([(0.0,) * len(settings.axes), *(target for target, _ in lines)])
     ends = ends_of(lines, settings)
     at = [int(np.abs(points - end).sum(axis=1).argmin()) for end in ends]
@@ -112,7 +112,6 @@ def test_noise_does_not_keep_lines_apart(axes: int) -> None:
         count, off = left_out(lines, settings)
         assert off <= tolerance + axes / FINE
         assert count >= 196
-
 
 
 @pytest.mark.parametrize("share", [0.97, 1.03])

@@ -42,6 +42,7 @@ def small(folder: Path) -> Path:
     return path
 
 
+@pytest.mark.first
 def test_a_part_on_the_whole_machine(tmp_path: Path) -> None:
     """It homes and ends within half a step; no drive sees a timing that its data sheet does not allow."""
     seen = run(WholeMachine(small(tmp_path), tmp_path / "made"), PART)

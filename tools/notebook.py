@@ -5,9 +5,6 @@ import re
 from pathlib import Path
 from typing import Any
 
-import nbformat
-from nbclient import NotebookClient
-from nbconvert import MarkdownExporter
 from passo.toolchain import paths
 
 NOTEBOOKS = tuple(sorted(paths.examples.rglob("*.ipynb")))
@@ -17,6 +14,9 @@ PROGRESS = re.compile(r"^(Building|Built) .*\n", re.M)  # of the first use of a 
 
 def executed(notebook: Path) -> Any:
     """A notebook with its outputs, executed in its folder. Raises CellExecutionError if a cell fails."""
+    import nbformat  # takes seconds
+    from nbclient import NotebookClient
+
     found: Any = nbformat.read(notebook, nbformat.NO_CONVERT)  # type: ignore[no-untyped-call]
     client = NotebookClient(
         found,
@@ -28,6 +28,8 @@ def executed(notebook: Path) -> Any:
 
 def page(notebook: Any) -> tuple[str, dict[str, bytes]]:
     """Markdown of an executed notebook, and its pictures by name."""
+    from nbconvert import MarkdownExporter
+
     for cell in notebook.cells:
         for output in cell.get("outputs", []):
             if "text" in output:
