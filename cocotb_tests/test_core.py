@@ -8,12 +8,14 @@ import pytest
 
 from cocotb_tests.helpers.runner import CORE_TOP as TOP
 from cocotb_tests.helpers.runner import (
+    MOST_AXES,
     ONE_CHANNEL,
     TWO_CHANNELS,
     WITH_ALL,
     WITH_ENCODERS,
     WITH_INPUTS,
     WITH_OUTPUTS,
+    WITH_PINS,
     WITH_TRACKED,
     WITH_TRACKERS,
     run,
@@ -21,6 +23,7 @@ from cocotb_tests.helpers.runner import (
 )
 
 MOST_CHANNELS = {"CHANNELS": 8, "AXES": 1, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 8, "RAMP_QUEUE_LOG2": 8}
+MOST_CHANNELS |= WITH_PINS
 
 # Icarus Verilog is up to ten times slower: long tests run only on Verilator, Icarus gets few random moves of
 # one channel; `make icarus` runs all, `make verify` a thousand more histories.
@@ -57,9 +60,16 @@ def test_long(simulator: str) -> None:
 
 
 @verilator_only
-def test_most_channels(simulator: str) -> None:
-    """As many channels and as deep queues as a core can have."""
-    run("cocotb_tests.core_channels", TOP, MOST_CHANNELS, simulator)
+@pytest.mark.parametrize("module", ["core_channels", "core_most_channels"])
+def test_most_channels(simulator: str, module: str) -> None:
+    """As many channels and as deep queues as a core can have, and all pins."""
+    run(f"cocotb_tests.{module}", TOP, MOST_CHANNELS, simulator)
+
+
+@verilator_only
+def test_most_axes(simulator: str) -> None:
+    """All settings, and all pins of as many axes as a channel can have."""
+    run("cocotb_tests.core_most_axes", TOP, MOST_AXES, simulator)
 
 
 def test_random_moves(simulator: str) -> None:
