@@ -12,6 +12,8 @@ from typing import Any
 import cocotb
 import numpy as np
 from cocotb.handle import HierarchyObject
+from cocotbext.axi import AxiProt, AxiResp
+from passo import registers as r
 from passo.build import Parameters
 from passo.cocotb.bus import SELECT, WORD, AxiLite, Bus, BusHost, Wishbone
 from passo.cocotb.clocks import PERIOD, Clocks, Recorder, read
@@ -19,10 +21,14 @@ from passo.cocotb.host import plain_test, wait
 from passo.cocotb.thread import Thread
 from passo.driver import Driver
 from passo.engine import Engine, model_engine
-from passo.registers import Operation
+from passo.host import Channel
+from passo.link import Link
+from passo.registers import Cause, LineOutputWord, Operation
 
 from cocotb_tests.helpers import core_frames as frames
 from cocotb_tests.helpers.bench import patience, rng
+from cocotb_tests.helpers.core_bench import ONE, Line, Ramp
+from cocotb_tests.helpers.core_shaft import GRAY
 from cocotb_tests.helpers.runner import BUS_CORE
 from tests.helpers.driver_wire import by_speed, configure
 
@@ -31,6 +37,7 @@ CLOCK_HZ = 10_000_000  # of plans
 READ_WAIT = 264  # clocks of a read, at most
 WAIT = 128  # clocks after a word or a change of SELECT
 MOVES = ((30, -17), (-5, 0), (1, 40), (-26, -23))
+FULL = LineOutputWord(raster=False, proportional=False, levels=0x3C, power=0xFFFF)
 
 
 class BusCore(BusHost):
@@ -234,3 +241,86 @@ def a_reset_closes_the_frame(core: BusCore) -> None:
         core._thread.wait(reset())
         assert core.read(SELECT) == 2
         assert core.transfer(words) == expected
+
+
+@bus_test
+def what_an_access_leaves_open(core: BusCore) -> None:
+    """The byte of the address within a word, and AXI's PROT, do not matter."""
+    if not isinstance(core.bus, AxiLite):
+        assert [core.read(SELECT + byte) for byte in range(4)] == [2] * 4
+        return
+    master, all_rights = core.bus._master, AxiProt.PRIVILEGED | AxiProt.NONSECURE | AxiProt.INSTRUCTION
+
+    async def select() -> bytes:
+        answers = [await master.read(SELECT + byte, 1, prot=all_rights) for byte in range(4)]
+        answers.append(await master.write(SELECT, bytes(4), prot=all_rights))
+        assert {answer.resp for answer in answers} == {AxiResp.OKAY}
+        return b"".join(answer.data for answer in answers[:4])
+
+    assert int.from_bytes(core._thread.wait(select()), "little") == 2
+
+
+@bus_test
+def inputs_come_to_the_core(core: BusCore) -> None:
+    """Each pin of each axis is read at its place; the probe; the counts of the encoders."""
+    channel = Channel(Link(core), PARAMETERS)
+    for kind, name in enumerate(("limit_low", "limit_high", "home", "alarm")):
+        for axis in range(PARAMETERS.axes):
+            core.set(name, 1 << axis)
+            core.run(20)
+            assert channel.link.read(channel.base + r.CHANNEL_INPUT_LEVELS, 1) == [1 << 8 * kind + axis]
+            core.set(name, 0)
+    assert channel.state().cause == Cause.ALARM
+    core.set("probe", 1)
+    core.run(20)
+    (state,) = channel.link.read(channel.base + r.CHANNEL_TRIGGER_STATE, 1)
+    assert r.ChannelTriggerStateWord.unpack(state).probe
+    core.set("probe", 0)
+    expected = [0] * PARAMETERS.axes
+    for axis in range(PARAMETERS.axes):
+        for a, b in (*GRAY[1:], GRAY[0], GRAY[1], GRAY[0]):
+            core.set("encoder_a", a << axis)
+            core.set("encoder_b", b << axis)
+            core.run(10)
+        core.set("encoder_index", 1 << axis)
+        core.run(10)
+        core.set("encoder_index", 0)
+        expected[axis] = 4
+        assert channel.link.read(channel.base + r.CHANNEL_ENCODER_POSITION_BASE, len(expected)) == expected
+        index = channel.base + r.CHANNEL_ENCODER_BASE + axis * r.CHANNEL_ENCODER_STRIDE + r.ENCODER_INDEX
+        assert r.EncoderIndexWord.unpack(channel.link.read(index, 1)[0]).indexes == 1
+
+
+@bus_test
+def outputs_come_from_the_core(core: BusCore) -> None:
+    """Levels, power, compare; a motion begins with sync; the e-stop ends it, and the host is interrupted."""
+    channel = Channel(Link(core), PARAMETERS)
+    for levels in (0xA5, 0x5A, 0):
+        channel.link.write(channel.base + r.CHANNEL_OUTPUT_LEVELS, levels)
+        core.run(10)
+        assert read(core.dut.outputs) == levels
+    channel.link.write(channel.base + r.CHANNEL_COMPARE_PULSE, 2, 5, 5)
+    step, compare = core.record(core.dut.step), core.record(core.dut.compare)
+    line = Line(9, (9,) * PARAMETERS.axes, endless=True).words()
+    channel.push_line_words([line], [FULL])
+    channel.link.push(channel.base + r.CHANNEL_RAMP, Ramp(ONE // 20, 0).words())
+    channel.link.push(channel.base + r.CHANNEL_RAMP, Ramp(ONE // 20, 60_000).words())
+    channel.link.write(r.ADDRESS_RUN, 1 << r.RUN_WAIT_SYNC_LSB | 1)
+    core.run(1000)
+    assert not read(core.dut.running)
+    core.set("sync", 1)
+    core.run(1000)
+    assert read(core.dut.running) and read(core.dut.power) and not read(core.dut.irq)
+    rises = [clock for clock, level in step.changes if level]
+    assert read(core.dut.outputs) == FULL.levels
+    assert [clock for clock, level in compare.changes if level] == rises[4::5]
+    core.set("estop_n", 0)
+    core.run(20)
+    assert read(core.dut.irq) and not read(core.dut.running) and not read(core.dut.power)
+    core.set("sync", 0)
+    core.set("estop_n", 1)
+    core.run(20)
+    channel.link.write(r.ADDRESS_ESTOP_CLEAR, 1)
+    assert channel.state().cause == Cause.ESTOP
+    channel.clear()
+    assert not read(core.dut.irq)

@@ -4,6 +4,7 @@
 from dataclasses import replace
 
 from passo import registers as r
+from passo.frame import PAYLOAD_MAX
 from passo.link import Link, LinkError
 from passo.registers import Operation, Verdict
 
@@ -205,3 +206,35 @@ def noise_on_the_wire(core: Core) -> None:
     assert flipped > 5 and core.link.retries > 3
     assert len(core.motions()) == 4
     assert channel.positions() == expected
+
+
+@core_test
+def frames_that_are_too_long(core: Core) -> None:
+    """Of any length above 60: refused after all their words."""
+    channel, _, _, _ = frames(core)
+    before, counts = everything(core), refusals(core)
+    for sequence, length in enumerate((61, 64, 127, 128, 255)):
+        write = request(Operation.WRITE, sequence, length, channel + r.CHANNEL_RATE_TARGET, [0] * length)
+        assert ack(core.transfer(write, GAP)) == (sequence, Verdict.BAD_LENGTH)
+    assert everything(core) == before
+    assert refusals(core) == counts | {Verdict.BAD_LENGTH: counts[Verdict.BAD_LENGTH] + 5}
+
+
+@core_test
+def a_frame_may_follow_immediately(core: Core) -> None:
+    """It waits while a long frame before it is executed; both are acknowledged."""
+    _, line, ramp, _ = frames(core)
+    one = Line(5, (1,) * core.axes).words()
+    lines = one * (PAYLOAD_MAX // len(one))
+    host = core.channel()
+    depth = host.room()
+    for gap in (2, 3, 5, 8, 13):
+        push = request(Operation.PUSH, 0x20 + gap, len(lines), line, lines)
+        bad = request(Operation.PUSH, 0x40 + gap, 4, ramp, [0] * 4)
+        good = request(Operation.PUSH, 0x60 + gap, 5, ramp, Ramp(0, 1).words())
+        assert ack(core.transfer(push, gap)) == (0x20 + gap, Verdict.OK)
+        assert ack(core.transfer(bad, gap)) == (0x40 + gap, Verdict.BAD_LENGTH)
+        assert ack(core.transfer(good, gap)) == (0x60 + gap, Verdict.OK)
+        assert host.room() == (depth[0] - PAYLOAD_MAX // len(one), depth[1] - 1)
+        host.abort()
+        host.clear()
