@@ -177,7 +177,8 @@ def _build(
     netlist = (rtl / CELLS).exists()
     arguments = [*ONE_FILE] if simulator == "verilator" else []
     if coverage:
-        arguments += ["--coverage-line", "--coverage-toggle"]
+        # with all its counters, a function of a large core would take a compiler ten minutes
+        arguments += ["--coverage-line", "--coverage-toggle", "--output-split-cfuncs", "2000"]
     if netlist and simulator == "verilator":
         arguments += ["-Wno-fatal", "-Wno-lint"]  # the models of the cells are not ours to warn about
     digest = hashlib.sha256(Path(__file__).read_bytes())
@@ -228,6 +229,8 @@ class _Verilator(Verilator):
             verilate.insert(verilate.index(str(self.sources[0])), str(public))
             # more takes longer than it saves
             make = [*make, f"OPT_FAST={'-O0' if 'netlist' in self.build_dir.name else '-O1'}"]
+        else:
+            make = [*make, "OPT_FAST=-O1"]  # the counters of a large core take minutes to optimize
         objects = [str(path) for path in self._runtime().glob("verilated*.o")]
         return [verilate, *([["cp", *objects, str(self.build_dir)]] if objects else []), make]
 
