@@ -68,9 +68,10 @@ static bool find_direction(const struct passo_path_planner *path, const int64_t 
 }
 
 #ifndef PASSO_WITHOUT_ROUNDING
-/* Directions that pass the end of the last line within the tolerance; whether the new one is among them, and
- * among those so far. The distance is below that of the unit vectors times the length, which is below the
- * greatest of the axes that move times the root of their number. */
+/* Narrows the directions to those that pass the end of the last line, which becomes an omitted one, within
+ * the tolerance; tells whether the new one is among them. The end is off by less than its distance times the
+ * difference of the unit vectors: at most the greatest component, times the root of the number of axes that
+ * move. */
 static bool narrow(
     const struct passo_path_planner *path, const int32_t *unit, struct passo_path_merged *merged)
 {
@@ -81,9 +82,10 @@ static bool narrow(
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
 		axes += unit[axis] != 0 || end->direction[axis] != 0;
 	const uint64_t root = (uint64_t)passo_isqrt64(axes << 32) + 1;
-	const int64_t most = (int64_t)passo_path_smaller(
-	    passo_mul_div(passo_mul_div(path->tolerance, UINT32_C(1) << 16, root), PASSO_PATH_ONE, end->length),
-	    PASSO_PATH_ONE / 2);
+	const int64_t most =
+	    (int64_t)passo_path_smaller(passo_mul_div(passo_mul_div(path->tolerance, UINT32_C(1) << 16, root),
+					    PASSO_PATH_ONE, end->length),
+		PASSO_PATH_ONE / 2);
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
 		const int32_t moves = unit[axis] != 0 || end->direction[axis] != 0 ? (int32_t)most : 0;
 		int32_t low = end->direction[axis] - moves, high = end->direction[axis] + moves;

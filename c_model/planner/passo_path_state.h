@@ -152,8 +152,8 @@ struct passo_path_merged {
 	uint64_t bulge;  /* UQ.46 per substep: this times the distances to both of its ends */
 	uint64_t longer; /* than the last of them, UQ32.16 substeps */
 #ifndef PASSO_WITHOUT_ROUNDING
-	/* Unit vectors of lines from its start that pass all omitted ends within the tolerance, by axes, Q1.30;
-	 * unless none is omitted. */
+	/* Unit vectors of lines from its start that pass all omitted ends within the tolerance, by axes,
+	 * Q1.30; unless none is omitted. */
 	int32_t low[PASSO_PATH_AXES_MAX], high[PASSO_PATH_AXES_MAX];
 	bool narrowed;
 #endif
