@@ -12,6 +12,7 @@ from passo.register_table import Register
 from passo.registers import Cause, LineOutputWord, Operation, TriggerSource, Verdict
 
 from cocotb_tests.core_inputs import arm, trigger_state
+from cocotb_tests.core_outputs import levels_at
 from cocotb_tests.core_trackers import Trackers
 from cocotb_tests.helpers.bench import rng
 from cocotb_tests.helpers.core_bench import ONE, V_MAX, Core, CoreChannel, Line, PinTiming, Ramp, core_test
@@ -467,12 +468,8 @@ def a_raster_queue_is_filled_while_it_runs(core: Core) -> None:
     core.run_until(lambda: len(core.steps(0, since)) > 4 * len(words), 100_000, 512)
     assert output_state(channel).raster_empty
     values = [word >> shift & 0xFF for word in words for shift in (0, 8, 16, 24)]
-    power = iter([*core.changes("power", 0, since), (core.clock, 0)])
-    shown, (at, level) = 0, next(power)
-    for clock, value in zip(core.steps(0, since), values, strict=False):
-        while at <= clock:
-            shown, (at, level) = level, next(power)
-        assert shown == value // 255
+    steps = core.steps(0, since)[: len(values)]
+    assert levels_at(core, "power", 0, since, steps) == [value // 255 for value in values]
     channel.abort()
     assert output_state(channel).raster_room == RASTER_WORDS
     channel.clear()

@@ -4,11 +4,11 @@
 from passo import registers as r
 from passo.cocotb.clocks import read
 from passo.host import RATE_ONE
-from passo.link import RefusedError
 from passo.registers import Cause, LineOutputWord, TriggerSource, Verdict
 
 from cocotb_tests.core_inputs import trigger_state
 from cocotb_tests.helpers.core_bench import ONE, Core, CoreChannel, Line, PinTiming, Ramp, core_test
+from cocotb_tests.helpers.core_frames import verdict
 from cocotb_tests.helpers.core_shaft import Shafts, error, positions
 
 FULL = LineOutputWord(raster=False, proportional=False, levels=0x3C, power=0xFFFF)
@@ -19,16 +19,6 @@ LINES_IN_FRAME = 15
 def channels(core: Core) -> list[CoreChannel]:
     """All of them."""
     return [core.channel(number) for number in range(core.parameters.channels)]
-
-
-def verdict(channel: CoreChannel, register: int, *words: int, push: bool = False) -> Verdict:
-    """Of a write or push to a register of the channel."""
-    send = channel.link.push if push else channel.link.write
-    try:
-        send(channel.base + register, *([list(words)] if push else words))
-    except RefusedError as refused:
-        return refused.verdict
-    return Verdict.OK
 
 
 @core_test

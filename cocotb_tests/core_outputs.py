@@ -7,11 +7,11 @@ from itertools import pairwise
 import pytest
 from passo import registers as r
 from passo.host import RATE_ONE
-from passo.link import RefusedError
 from passo.registers import Cause, LineOutputWord, State, Verdict
 
 from cocotb_tests.helpers.bench import rng
 from cocotb_tests.helpers.core_bench import ONE, Core, CoreChannel, Line, PinTiming, Ramp, core_test
+from cocotb_tests.helpers.core_frames import verdict
 
 FULL = 65535
 AT_ONCE = RATE_ONE
@@ -284,18 +284,6 @@ def compare_pulses_with_the_step_onto_its_point(core: Core) -> None:
     rises = [clock for clock, level in core.changes("compare", 0, since) if level]
     falls = [clock for clock, level in core.changes("compare", 0, since) if not level]
     assert rises == expected and falls == [clock + 3 for clock in expected]
-
-
-def verdict(channel: CoreChannel, address: int, *words: int, push: bool = False) -> Verdict:
-    """Of a write or push to a register of the channel."""
-    try:
-        if push:
-            channel.link.push(channel.base + address, words)
-        else:
-            channel.link.write(channel.base + address, *words)
-    except RefusedError as error:
-        return error.verdict
-    return Verdict.OK
 
 
 @core_test

@@ -5,9 +5,10 @@ from collections.abc import Sequence
 
 from passo import frame
 from passo import registers as r
+from passo.link import RefusedError
 from passo.registers import Operation, Verdict
 
-from cocotb_tests.helpers.core_bench import Core
+from cocotb_tests.helpers.core_bench import Core, CoreChannel
 
 GAP = 64
 COUNTED = [verdict for verdict in Verdict if verdict not in (Verdict.OK, Verdict.DUPLICATE)]
@@ -29,6 +30,18 @@ def ack(words: Sequence[int]) -> tuple[int, Verdict]:
     word = words[-1]
     assert word >> 16 ^ word & 0xFFFF == 0xFFFF, hex(word)
     return word >> 24, Verdict(word >> 16 & 0xFF)
+
+
+def verdict(channel: CoreChannel, address: int, *words: int, push: bool = False) -> Verdict:
+    """Of a write or push to a register of the channel."""
+    try:
+        if push:
+            channel.link.push(channel.base + address, words)
+        else:
+            channel.link.write(channel.base + address, *words)
+    except RefusedError as error:
+        return error.verdict
+    return Verdict.OK
 
 
 def refusals(core: Core) -> dict[Verdict, int]:
