@@ -44,7 +44,7 @@ def served(link: Path, board: GrblBoard) -> Iterator[None]:
 
 def _serve_board(board: GrblBoard, terminal: int, until: Callable[[], bool]) -> None:
     os.set_blocking(terminal, False)
-    told = 0
+    told = len(board.output)  # nobody has read what it said before
     while not until():
         with contextlib.suppress(BlockingIOError, OSError):
             board.type(os.read(terminal, 4096).decode("latin-1"))

@@ -54,16 +54,16 @@ class Sender:
         self.grbl.job_run()
 
     def boot(self) -> None:
-        """Reset the controller, read what senders read first, and ask for its state from then on."""
-        self.grbl.softreset()
+        """Wait until the reset of the connection is over, and all that the sender asks after it is answered.
+
+        An answer that comes later would count as that of a line of the job.
+        """
         self.wait("on_boot")
         self.grbl.poll_interval = 0.05
         self.grbl.poll_start()
-        first = ("on_settings_downloaded", "on_hash_stateupdate", "on_gcode_parser_stateupdate")
-        for event in first:
-            self.wait(event)
-        # $# is an error in motion, for the sender too; it may have seen two greetings
-        time.sleep(0.3)
+        self.wait("on_standstill")  # after some reports: at the first one it asks for modes again
+        # one of these events comes with the greeting, and one with each answer
+        self.until(lambda: self.events["on_rx_buffer_percent"] == 1 + self.events["on_write"])
 
     def finish(self) -> None:
         """Wait for the end of the job and of its motion."""

@@ -39,7 +39,6 @@ PIN = re.compile(
 )
 PATIENCE = 3 * 3600.0  # seconds
 HOMING = 120.0  # simulated seconds
-BOOTED = 0.2  # until all questions of the sender are answered
 REPORTED = 0.02  # until a report that has begun has ended
 
 STUBS = """
@@ -236,9 +235,6 @@ def run(whole: WholeMachine, part: Sequence[str], patience: float = PATIENCE) ->
             sender = Sender(link, patience)
             try:
                 sender.boot()
-                # a slow board still answers what the sender has asked: those are no answers of the job
-                asked = plugged.seconds
-                sender.until(lambda: plugged.seconds > asked + BOOTED)
                 sender.start(list(part), incremental=True)
                 # a slow board may still look idle, as before the job
                 sender.until(lambda: sender.events["on_processed_command"] >= len(sender.grbl.buffer) > 0)
