@@ -94,6 +94,21 @@ def straights(draw: Any) -> Piece:
 
 
 @st.composite
+def polylines(draw: Any) -> Piece:
+    """Corners of any turns, to either side, between lines of any lengths."""
+    sizes = draw(st.lists(st.floats(-2, 0.3), min_size=1, max_size=5))
+    turn = draw(st.floats(0, 2))
+    bends = draw(st.lists(st.tuples(st.sampled_from((1, -1)), st.floats(0.2, 1)), min_size=1, max_size=6))
+    feed = draw(st.sampled_from((RAPID, 6000.0, 30_000.0)))
+    return Piece(
+        draw(st.sampled_from((12, 24))),
+        tuple(round(10**size, 4) for size in sizes),
+        tuple(round(sign * part * 10**turn, 2) for sign, part in bends),
+        (feed,),
+    )
+
+
+@st.composite
 def cases(draw: Any, machines: Sequence[str] = tuple(MACHINES)) -> Case:
     """A path that takes no more than some seconds."""
     machine = draw(st.sampled_from(sorted(machines)))
@@ -106,7 +121,7 @@ def cases(draw: Any, machines: Sequence[str] = tuple(MACHINES)) -> Case:
     )
     case = Case(
         machine,
-        tuple(draw(st.lists(pieces() | arcs() | fans() | straights(), min_size=1, max_size=4))),
+        tuple(draw(st.lists(pieces() | arcs() | fans() | straights() | polylines(), min_size=1, max_size=4))),
         draw(st.sampled_from(profiles)),
         draw(st.sampled_from(LOOK_AHEADS)),
         draw(st.sampled_from(POLLS)),

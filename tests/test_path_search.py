@@ -2,15 +2,17 @@
 """The search for the worst path: what it kept, a short search, and that it finds a planner that is wrong."""
 
 import itertools
+import random
 from dataclasses import replace
 
 import pytest
 from passo.path import PathSettings
+from passo.random_cases import log_uniform, seed
 
 from benchmarks import path_adversary, path_measure
 from benchmarks.path_measure import KINDS, Measured, measure, play
 from benchmarks.path_page import PROFILES, page
-from benchmarks.path_paths import Case, Piece, case_of, read_cases
+from benchmarks.path_paths import JERKS, Case, Piece, case_of, read_cases
 
 KEPT = read_cases(path_adversary.WORST)
 
@@ -31,6 +33,49 @@ def test_slight_corners_keep_the_jerk(bend: float) -> None:
         assert measured.faults == {}, (bends, heading, slope)
 
 
+# machine, lengths and turns in degrees: what had more jerk than an axis may have
+CORNERS = {
+    "pairs to both sides": ("soft", (0.2, 0.6), (10.0, 10.0, -10.0, -10.0)),
+    "a zigzag of two lengths": ("soft", (0.12, 0.41), (30.0, -30.0)),
+    "pairs to one side": ("fast", (0.023, 1.766), (5.15,)),
+    "a step between long lines": ("soft", (1.1441, 1.7232, 0.0511), (51.92, -51.92, -51.92, 51.92, 26.5)),
+    "slower once another line is known": (
+        "soft",
+        (1.2587, 1.3511, 0.2251),
+        (-14.19, -4.97, 22.42, 22.42, -21.29),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CORNERS)
+def test_corners_near_each_other_keep_the_jerk(name: str) -> None:
+    """The turn of one, and that of the next one to the other side or to the same, add up."""
+    machine, sizes, bends = CORNERS[name]
+    for heading in (0.0, 45.0):
+        piece = Piece(24, sizes, bends, (6000.0,))
+        assert beyond(Case(machine, (piece,), "jerk", 48, 1000, heading)) == {}
+
+
+def test_random_corners_keep_the_jerk() -> None:
+    """Of any turns, to either side, between lines of any lengths."""
+    rng = random.Random(f"corners {seed()}")
+    for _ in range(150):
+        sizes = tuple(log_uniform(rng, 0.01, 2) for _ in range(rng.randint(1, 5)))
+        turn = log_uniform(rng, 1, 100)
+        parts = [rng.choice((1, 1, rng.random())) for _ in range(rng.randint(2, 6))]
+        piece = Piece(24, sizes, tuple(turn * rng.choice((-1, 1)) * part for part in parts))
+        look_ahead, heading = rng.choice((16, 48, 300)), rng.choice((0.0, 20.0, 45.0))
+        case = Case(rng.choice(JERKS), (piece,), "jerk", look_ahead, 1000, heading)
+        assert beyond(case) == {}, case
+
+
+def beyond(case: Case) -> dict[str, str]:
+    """What is beyond a limit at the pins."""
+    measured = Measured()
+    play(case, measured)
+    return measured.faults
+
+
 def weaker(share: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """The planner has more acceleration than the judge and the reference think."""
 
@@ -45,13 +90,15 @@ def weaker(share: float, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.parametrize(("share", "kind"), [(1.1, "acceleration"), (0.9, "slow")])
 def test_the_search_finds_a_wrong_planner(share: float, kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A tenth too strong is seen at the pins, a tenth too weak in the time; one piece shows it."""
+    """A tenth too strong is seen at the pins, a tenth too weak in the time; each piece is needed for it."""
     weaker(share, monkeypatch)
     batches = (path_adversary.smallest(kind, seed, 100) for seed in range(1, 9))
     error = next(filter(None, batches), None)  # what a batch draws depends on the library
     assert error is not None and error.kind == kind
-    assert len(error.case.pieces) == 1
     assert measure(error.case).faults.keys() >= {kind}
+    pieces = error.case.pieces
+    for fewer in itertools.combinations(pieces, len(pieces) - 1) if len(pieces) > 1 else ():
+        assert kind not in measure(replace(error.case, pieces=fewer)).faults
 
 
 def test_a_stop_of_the_core_is_a_fault_of_its_own() -> None:

@@ -250,7 +250,7 @@ uint64_t passo_path_limit_corner(
 {
 	struct passo_path_corner corner;
 
-	passo_path_restore_start(passo_path_item(path, path->added - 1), &path->at);
+	passo_path_restore_start(path);
 	if (!passo_path_find_turn(path, path->at.direction, unit, &corner)
 	    || passo_path_goes_on(path, corner.turn, length)) {
 		go_on(path, unit, item);

@@ -15,11 +15,10 @@
 /* On an arc at a speed v, of a radius r, the ramp that is steepest at t takes 3 v t / r of the jerk: with
  * half of it along the arc, 0.7 are left. UQ0.16. */
 #define ACROSS 15463u
-/* In square_between(), of a curve, and of a zigzag, where no ramp has half of the jerk. */
+/* In square_between(): 11, with a third of the jerk. */
 #define JUMP 4u
-#define ZIGZAG 6u
-/* Corners of a curve: less is a zigzag. */
-#define TURNS 3u
+/* In slow_before(): 4.5, by SOFTNESS in passo_path_jerk.c, with half of the jerk. */
+#define REST 12u
 /* A twentieth of the deviation (UQ32.16 substeps), UQ.8 substeps. */
 #define OFF_PART (20u << 8)
 /* With this change of the direction an axis has the ramp on one side of a lone corner, or little of both. */
@@ -166,30 +165,30 @@ static bool turns_back(const struct passo_path_planner *path, const int32_t *uni
 	return product < 0;
 }
 
-/* Highest square where a curve, or a zigzag, passes into one to the other side, in the middle of the last
- * line. The acceleration jumps by `k v^2`, `k` the change of the curvature. Steps that are off by
- * `e` show a jerk of `0.75 k v^2 / w - 8 e / w^3` over a time w, so `k v^3 sqrt(k / e) / 11` at most; `e` is
- * that of chords, and of lines that are merged. Half of the jerk is for the ramps in the curves. */
+/* Highest square where a curve passes into one to the other side: the acceleration jumps by `k v^2`, `k` the
+ * change of the curvature. Steps that are off by `e` show a jerk of `0.75 k v^2 / w - 8 e / w^3` over a time
+ * w, so `k v^3 sqrt(k / e) / 11` at most; `e` is that of chords, and of lines that are merged. The rest of
+ * the jerk is for the ramps in the curves, and for a zigzag, whose jumps add up. */
 static uint64_t square_between(const struct passo_path_planner *path, const struct passo_path_corner *corner,
-    bool back, uint64_t turn, uint64_t jerk)
+    uint64_t turn, uint64_t jerk)
 {
-	if (path->at.turns == 0 || !corner->bends_before || !back)
-		return PASSO_PATH_SQUARE_MAX;
-	const uint64_t last = passo_mul_div(path->at.turn, corner->over, path->at.over);
+	const struct passo_path_place *at = &path->at;
+	const uint64_t last = passo_mul_div(at->turn, corner->over, at->over);
 	const uint64_t radius = radius_of(corner->over, turn + last);
-	const uint64_t jump = (path->at.turns < TURNS ? ZIGZAG : JUMP) * jerk;
-	const uint64_t off =
-	    path->deviation / OFF_PART + passo_mul_shift(corner->over, passo_path_larger(turn, last), 56);
-	return soft_square(radius * passo_isqrt64(passo_path_smaller(off, UINT32_MAX) * radius), jump);
+	const uint64_t off = path->deviation / OFF_PART
+	                   + passo_path_larger(passo_mul_shift(corner->over, turn, 56),
+			       passo_mul_shift(at->over, at->turn, 56));
+	return soft_square(radius * passo_isqrt64(passo_path_smaller(off, UINT32_MAX) * radius), JUMP * jerk);
 }
 
 /* The curve of the new line, for the next corner. */
 static void keep_turn(struct passo_path_planner *path, const struct passo_path_corner *corner,
-    const int32_t *unit, bool back, uint64_t turn)
+    const int32_t *unit, uint64_t turn)
 {
 	struct passo_path_place *at = &path->at;
 
-	at->turns = !corner->bends_behind ? 0 : at->turns == 0 || back ? 1 : at->turns + 1;
+	at->bends = corner->bends_behind;
+	passo_path_keep_corner(corner, at);
 	at->turn = turn;
 	at->over = corner->over;
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
@@ -218,13 +217,70 @@ static uint8_t lacking_over(const struct passo_path_planner *path, const struct 
 #endif
 
 #ifndef PASSO_WITHOUT_JERK_PATHS
+/* The path is no faster at the corner before either, unless a ramp that comes to rest before the next one
+ * may be: that has been planned, with half of the jerk (certain() in passo_path_jerk.c). It ends with
+ * `v = j t^2 / 2` over a length `j t^3 / 6`, so `v^3 = 4.5 j l^2`. Returns the highest square there. */
+static uint64_t slow_before(struct passo_path_planner *path, uint64_t square)
+{
+	const uint32_t index = passo_path_first(path);
+	struct passo_path_item *item = passo_path_item(path, index);
+	const uint64_t length = passo_path_smaller(passo_path_since_corner(path) >> 8, UINT32_MAX);
+
+	if (item->rest)
+		return 0;
+	square = passo_path_larger(square, soft_square(length * length, REST * path->at.jerk));
+	if (index > path->planned && square < item->bend) {
+		item->bend = square;
+		passo_path_limit(path, index);
+		passo_path_changes(path, index);
+	}
+	return item->bend;
+}
+
+/* Highest square at a corner, where a square limits the mean of the velocities there and at the one before.
+ */
+static uint64_t slow_between(struct passo_path_planner *path, uint64_t square)
+{
+	const uint64_t before = slow_before(path, square), mean = passo_isqrt64(square);
+	const uint64_t faster = passo_isqrt64(passo_path_larger(before, square)) - mean;
+
+	return passo_path_speed_square(mean - passo_path_smaller(faster, mean / 2));
+}
+
 /* Of a lone corner behind one to the other side, the area as of radius^2. Both show a jerk of
  * `(c (3 w v - d) - 8 e) / w^3` over a time w, `c` the mean of both changes of the direction, `d` the way
  * between, so `4 c v^3 / (d + 8 e / c)^2` at most; `8 e / c` is the length of the rounding. */
 static uint64_t area_between(const struct passo_path_planner *path, uint64_t over, uint64_t turn)
 {
-	over += passo_path_straight(path) << (PASSO_PATH_UNIT_BITS - 16);
+	over += passo_path_since_corner(path) << (PASSO_PATH_UNIT_BITS - 16);
 	return radius_of(over, PASSO_PATH_ONE) * radius_of(over, path->at.turn + turn);
+}
+
+/* Highest square at a corner behind one to the other side. `part`: 32nds of the jerk of a lone one; another
+ * may be part of a turn of several corners, and has a quarter of that, or what a curve has. */
+static uint64_t square_after(const struct passo_path_planner *path, const struct passo_path_corner *corner,
+    uint64_t turn, uint64_t jerk, uint32_t part)
+{
+	const bool lone = passo_path_was_lone(path) && !corner->bends_before && !corner->bends_behind;
+	uint64_t square = 0;
+
+	if (lone || passo_path_is_rounded(path))
+		square = soft_square(area_between(path, corner->over, turn), jerk / (lone ? 32 : 128) * part);
+	return lone ? square : passo_path_larger(square, square_between(path, corner, turn, jerk));
+}
+
+/* Radius, UQ.8 substeps, of a corner and the one before it, to the same side: outside of the line between
+ * they have no more than the rounding of one corner with both turns. */
+static uint64_t radius_of_pair(
+    const struct passo_path_planner *path, const struct passo_path_corner *corner, uint64_t turn)
+{
+	const uint64_t both = turn + path->at.turn, length = path->at.length;
+	const uint64_t arc = passo_mul_div(8 * path->deviation, PASSO_PATH_ONE, both);
+	uint64_t outside = passo_path_ahead(path) + corner->rounding.behind;
+
+	if (outside > length + length / 4)
+		outside = passo_path_smaller(outside, passo_path_larger(arc, length - length / 4));
+	return radius_of((length + outside) << (PASSO_PATH_UNIT_BITS - 16), both);
 }
 #endif
 
@@ -247,9 +303,14 @@ uint64_t passo_path_shaped_corner(struct passo_path_planner *path, const struct 
 
 #ifndef PASSO_WITHOUT_JERK_PATHS
 	const bool back = turns_back(path, unit);
+	const bool rounded = passo_path_is_rounded(path);
+	const bool pair = soft && rounded && !back && corner->bends_before && path->at.bends;
 
-	if (!bends && back && path->at.turn > 0)
-		area = passo_path_smaller(area, area_between(path, corner->over, turn));
+	if (pair) {
+		const uint64_t both = radius_of_pair(path, corner, turn);
+
+		area = passo_path_smaller(area, both * both);
+	}
 #endif
 	if (soft) {
 		while (
@@ -265,20 +326,28 @@ uint64_t passo_path_shaped_corner(struct passo_path_planner *path, const struct 
 	const uint64_t square = passo_path_smaller(square_by(path, corner, unit, item), fastest);
 #ifndef PASSO_WITHOUT_JERK_PATHS
 	if (soft) {
-		const uint64_t between = square_between(path, corner, back, turn, jerk);
+		uint64_t between = PASSO_PATH_SQUARE_MAX;
 
+		if (back && path->at.turn > 0)
+			between = square_after(path, corner, turn, jerk, JERK_PARTS[quarters]);
 		if (!bends) {
 			const uint64_t passed =
 			    passo_path_smaller(square, passo_path_smaller(before, behind));
 
 			item->over = lacking_over(path, corner, unit, item, passed);
 		}
-		if (quarters == 3) { /* ramps that end or begin there have jerk at their ends */
-			item->jerk -= item->jerk / 4;
-			if (last->eased < 2) /* no more than certain() says */
+		/* ramps that end or begin there have jerk at their ends */
+		if (quarters == 3 || (rounded && between < square)) {
+			if (!corner->bends_behind)
+				item->jerk -= item->jerk / 4;
+			if (!corner->bends_before && last->eased < 2) /* no more than certain() says */
 				last->jerk -= last->jerk / 4;
 		}
-		keep_turn(path, corner, unit, back, turn);
+		if (rounded && between < PASSO_PATH_SQUARE_MAX)
+			between = slow_between(path, between);
+		else if (pair && area < radius * radius)
+			slow_before(path, fastest);
+		keep_turn(path, corner, unit, turn);
 		return passo_path_smaller(square, between);
 	}
 #endif

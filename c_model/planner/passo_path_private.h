@@ -190,10 +190,16 @@ uint64_t passo_path_half_before(
 uint64_t passo_path_before(
     const struct passo_path_item *item, uint64_t end, uint64_t length, uint64_t behind);
 
+/* Sets the limits of an item, `top` and, unless the path rests there, `corner`; those before it are known. */
+void passo_path_limit(struct passo_path_planner *path, uint32_t index);
+
 /* What a line has by the corner at its start; its end may become another one, with a longer line. */
 static inline void passo_path_keep_start(const struct passo_path_item *item, struct passo_path_place *at)
 {
 	at->curve = item->curve;
+#ifndef PASSO_WITHOUT_ROUNDING
+	at->bend = item->bend;
+#endif
 #ifndef PASSO_LINEAR_PATHS
 	at->slope = item->slope;
 	at->eased = item->eased;
@@ -203,8 +209,11 @@ static inline void passo_path_keep_start(const struct passo_path_item *item, str
 #endif
 }
 
-static inline void passo_path_restore_start(struct passo_path_item *item, const struct passo_path_place *at)
+static inline void passo_path_restore_start(struct passo_path_planner *path)
 {
+	struct passo_path_item *item = passo_path_item(path, path->added - 1);
+	const struct passo_path_place *at = &path->at;
+
 	item->curve = at->curve;
 #ifndef PASSO_LINEAR_PATHS
 	item->slope = at->slope;
@@ -212,6 +221,12 @@ static inline void passo_path_restore_start(struct passo_path_item *item, const 
 #ifndef PASSO_WITHOUT_JERK_PATHS
 	item->jerk = at->jerk;
 #endif
+#endif
+#ifndef PASSO_WITHOUT_ROUNDING
+	if (passo_path_is_soft(path) && passo_path_is_rounded(path)) {
+		item->bend = at->bend;
+		passo_path_limit(path, path->added - 1);
+	}
 #endif
 }
 
@@ -221,7 +236,7 @@ static inline void passo_path_begin_straight(struct passo_path_planner *path)
 #ifdef PASSO_WITHOUT_JERK_PATHS
 	(void)path;
 #else
-	path->at.turns = 0;
+	path->at.bends = false;
 #endif
 }
 
@@ -338,6 +353,36 @@ static inline bool passo_path_spans(const struct passo_path_planner *path)
 	return passo_path_is_rounded(path) && passo_path_shape(path) == PASSO_SHAPE_LINEAR;
 }
 
+/* The first line of the straight that the last one ends. */
+static inline uint32_t passo_path_first(const struct passo_path_planner *path)
+{
+#ifndef PASSO_WITHOUT_ROUNDING
+	if (passo_path_is_rounded(path))
+		return path->at.first;
+#endif
+	return path->added - 1;
+}
+
+/* Its length, UQ32.16 substeps. */
+static inline uint64_t passo_path_since_corner(const struct passo_path_planner *path)
+{
+#ifndef PASSO_WITHOUT_ROUNDING
+	if (passo_path_is_rounded(path))
+		return path->at.straight;
+#endif
+	return path->at.length;
+}
+
+/* The limits of an item have changed. */
+static inline void passo_path_changes(struct passo_path_planner *path, uint32_t index)
+{
+#ifdef PASSO_WITHOUT_ROUNDING
+	(void)path, (void)index;
+#else
+	path->bent = index < path->bent ? index : path->bent;
+#endif
+}
+
 #ifdef PASSO_WITHOUT_ROUNDING
 static inline uint64_t passo_path_straight(const struct passo_path_planner *path)
 {
@@ -347,6 +392,23 @@ static inline uint64_t passo_path_straight(const struct passo_path_planner *path
 static inline void passo_path_end_straight(struct passo_path_planner *path)
 {
 	(void)path;
+}
+
+static inline void passo_path_keep_corner(const struct passo_path_corner *corner, struct passo_path_place *at)
+{
+	(void)corner, (void)at;
+}
+
+static inline bool passo_path_was_lone(const struct passo_path_planner *path)
+{
+	(void)path;
+	return true;
+}
+
+static inline uint64_t passo_path_ahead(const struct passo_path_planner *path)
+{
+	(void)path;
+	return 0;
 }
 
 static inline void passo_path_prolong(
@@ -399,6 +461,24 @@ void passo_path_prolong(struct passo_path_planner *path, struct passo_path_item 
 void passo_path_begin(
     struct passo_path_planner *path, uint64_t length, const struct passo_path_meeting *meeting, uint64_t arc);
 
+/* Of a corner, for the next one with profile jerk: whether it was lone, as far as that matters, and how far
+ * before it its rounding begins, UQ32.16 substeps. */
+static inline void passo_path_keep_corner(const struct passo_path_corner *corner, struct passo_path_place *at)
+{
+	at->lone = !corner->bends_before && !corner->bends_behind;
+	at->ahead = corner->rounding.before;
+}
+
+static inline bool passo_path_was_lone(const struct passo_path_planner *path)
+{
+	return path->at.lone || !passo_path_is_rounded(path);
+}
+
+static inline uint64_t passo_path_ahead(const struct passo_path_planner *path)
+{
+	return path->at.ahead;
+}
+
 /* Whether a turn (UQ2.60, squared) beside a line of a length is that of targets in 2^-32 mm alone. */
 bool passo_path_goes_on(const struct passo_path_planner *path, uint64_t turn, uint64_t length);
 #endif
@@ -423,9 +503,6 @@ uint64_t passo_path_limit_corner(
 /* By how much a line from the start of the last one, to a target, is off that one and all that it replaces;
  * saturates if it is not longer. */
 struct passo_path_merged passo_path_off(const struct passo_path_planner *path, const int64_t *target);
-
-/* Sets the limits of an item, `top` and, unless the path rests there, `corner`; those before it are known. */
-void passo_path_limit(struct passo_path_planner *path, uint32_t index);
 
 /* Ticks over a length (UQ32.32 substeps) at the mean of two velocities, whose sum is given, rounded down. */
 uint64_t passo_path_ticks_over(const struct passo_path_planner *path, uint64_t length, uint64_t speeds);

@@ -130,9 +130,12 @@ struct passo_path_place {
 #ifndef PASSO_WITHOUT_JERK_PATHS
 	int32_t half_turn[PASSO_PATH_AXES_MAX]; /* of the change of direction at that corner, Q1.30 */
 	uint64_t turn, over;                    /* its size, and in which length it turns, UQ.30 substeps */
-	uint32_t turns; /* corners of this curve, to one side; 0: the line is in none */
+	bool bends;                             /* the last line is part of the curve */
 #endif
 #ifndef PASSO_WITHOUT_ROUNDING
+	uint64_t bend;  /* the highest square at that corner */
+	uint64_t ahead; /* how far before it the rounding begins, UQ32.16 substeps */
+	bool lone;      /* no line beside it is part of a curve */
 	/* The straight that the last line ends, of lines of several feeds, and the corner that it begins
 	 * with. */
 	uint64_t straight;                 /* its length, UQ32.16 substeps */

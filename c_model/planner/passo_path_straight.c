@@ -33,12 +33,6 @@ static uint64_t length_of(
 	                            : (uint64_t)passo_path_item(path, index)->substeps << 16;
 }
 
-/* The limits of an item have changed. */
-static void changes(struct passo_path_planner *path, uint32_t index)
-{
-	path->bent = index < path->bent ? index : path->bent;
-}
-
 /* The line beside the corner on one side, its length, and the line that is one farther away than another. */
 static uint32_t first_of(const struct passo_path_meeting *meeting, bool behind)
 {
@@ -67,7 +61,7 @@ static void bend_half(struct passo_path_planner *path, const struct passo_path_m
 		item->begun |= half > 0 ? 2u : 1u;
 	passo_path_bend(path, curvature, behind ? meeting->to : meeting->from, half, item);
 	passo_path_set_fall(item);
-	changes(path, index);
+	passo_path_changes(path, index);
 }
 
 void passo_path_unbend(
@@ -84,7 +78,7 @@ void passo_path_unbend(
 				passo_path_straighten(item, half);
 		}
 		passo_path_set_fall(item);
-		changes(path, index);
+		passo_path_changes(path, index);
 		passed += length;
 		if (passed >= reach || index == (behind ? meeting->end : path->planned))
 			return;
@@ -152,7 +146,7 @@ static void clear_points(struct passo_path_planner *path, uint32_t corner)
 		item->turn = item->away = 0;
 		item->bend = PASSO_PATH_SQUARE_MAX;
 	}
-	changes(path, path->point[0]);
+	passo_path_changes(path, path->point[0]);
 	path->pointed = 0;
 }
 
@@ -169,7 +163,7 @@ static void set_point(struct passo_path_planner *path, const struct passo_path_m
 	point->valley = corner->valley;
 	point->bend = corner->bend;
 	path->point[behind] = index;
-	changes(path, index);
+	passo_path_changes(path, index);
 }
 
 /* On one side of a lone corner. */
