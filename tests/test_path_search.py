@@ -2,17 +2,17 @@
 """The search for the worst path: what it kept, a short search, and that it finds a planner that is wrong."""
 
 import itertools
-import random
 from dataclasses import replace
 
 import pytest
 from passo.path import PathSettings
-from passo.random_cases import log_uniform, seed
+from passo.random_cases import log_uniform
 
 from benchmarks import path_adversary, path_measure
 from benchmarks.path_measure import KINDS, Measured, measure, play
 from benchmarks.path_page import PROFILES, page
 from benchmarks.path_paths import JERKS, Case, Piece, case_of, read_cases
+from tests.test_path_parts import randoms
 
 KEPT = read_cases(path_adversary.WORST)
 
@@ -28,9 +28,8 @@ def test_slight_corners_keep_the_jerk(bend: float) -> None:
     """Of axes that turn and speed up: to one side and to both, in directions of one axis and of all."""
     for bends, heading, slope in itertools.product([(bend,), (bend, -bend)], [0.0, 45.0], [0.0, 0.5]):
         piece = Piece(12, (20.0,), bends, slopes=(slope,))
-        measured = Measured()
-        play(Case("fast", (piece,), "jerk", 48, 8000, heading), measured)
-        assert measured.faults == {}, (bends, heading, slope)
+        case = Case("fast", (piece,), "jerk", 48, 8000, heading)
+        assert beyond(case) == {}, (bends, heading, slope)
 
 
 # machine, lengths and turns in degrees: what had more jerk than an axis may have
@@ -58,8 +57,7 @@ def test_corners_near_each_other_keep_the_jerk(name: str) -> None:
 
 def test_random_corners_keep_the_jerk() -> None:
     """Of any turns, to either side, between lines of any lengths."""
-    rng = random.Random(f"corners {seed()}")
-    for _ in range(150):
+    for rng in randoms("corners", 150):
         sizes = tuple(log_uniform(rng, 0.01, 2) for _ in range(rng.randint(1, 5)))
         turn = log_uniform(rng, 1, 100)
         parts = [rng.choice((1, 1, rng.random())) for _ in range(rng.randint(2, 6))]

@@ -214,9 +214,7 @@ static uint8_t lacking_over(const struct passo_path_planner *path, const struct 
 	}
 	return (uint8_t)lacks;
 }
-#endif
 
-#ifndef PASSO_WITHOUT_JERK_PATHS
 /* The path is no faster at the corner before either, unless a ramp that comes to rest before the next one
  * may be: that has been planned, with half of the jerk (certain() in passo_path_jerk.c). It ends with
  * `v = j t^2 / 2` over a length `j t^3 / 6`, so `v^3 = 4.5 j l^2`. Returns the highest square there. */
@@ -237,8 +235,7 @@ static uint64_t slow_before(struct passo_path_planner *path, uint64_t square)
 	return item->bend;
 }
 
-/* Highest square at a corner, where a square limits the mean of the velocities there and at the one before.
- */
+/* Highest square at a corner, where one limits the mean of the velocities there and at the corner before. */
 static uint64_t slow_between(struct passo_path_planner *path, uint64_t square)
 {
 	const uint64_t before = slow_before(path, square), mean = passo_isqrt64(square);
