@@ -67,6 +67,20 @@ def test_random_corners_keep_the_jerk() -> None:
         assert beyond(case) == {}, case
 
 
+def test_random_corners_behind_a_curve_keep_the_acceleration() -> None:
+    """Corners with a sliver between them, to which the path comes down: of axes of which one is weaker."""
+    for rng in randoms("slivers", 40):
+        bends = tuple(rng.uniform(-7, 7) for _ in range(rng.randint(1, 3)))
+        sizes = tuple(log_uniform(rng, 0.09, 0.6) for _ in range(rng.randint(1, 3)))
+        corners = tuple(rng.choice((-1, 1)) * rng.uniform(20, 70) for _ in range(2))
+        pieces = (
+            Piece(rng.randint(8, 20), sizes, bends),
+            Piece(2, (log_uniform(rng, 0.001, 0.05), 30.0), corners),
+        )
+        case = Case("laser", pieces, "linear", 300, 8000, rng.choice((0.0, 20.0, 90.0)))
+        assert beyond(case) == {}, case
+
+
 def beyond(case: Case) -> dict[str, str]:
     """What is beyond a limit at the pins."""
     measured = Measured()

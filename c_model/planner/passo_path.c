@@ -10,6 +10,8 @@
 #define SHARP 4u
 /* A line that takes longer than this part of a second is not merged. */
 #define MERGED_PER_SECOND 128u
+/* Steps of the search for the square at which a corner is passed. */
+#define SEARCHED 8u
 
 static struct passo_path_item *newest(const struct passo_path_planner *path)
 {
@@ -214,11 +216,10 @@ static uint64_t reach_over(const struct passo_path_item *item, uint64_t end, uin
 	return passo_path_before(item, end, length - passo_path_smaller(flat, length), behind);
 }
 
-/* Highest square at the start of an item from which the path can come to rest. */
-static uint64_t reach_of(const struct passo_path_planner *path, uint32_t index,
-    const struct passo_path_item *item, const struct passo_path_item *next, uint64_t sharp)
+/* Highest square at the start of an item from which the path can come down to one at its end. */
+static uint64_t reach_from(const struct passo_path_planner *path, uint32_t index,
+    const struct passo_path_item *item, uint64_t end, uint64_t sharp)
 {
-	const uint64_t end = end_square(item, next);
 	const uint64_t behind =
 	    passo_path_larger(passo_path_flat(path, index + 1, index, false, end, true), sharp);
 	/* its flat end is that of a square which it cannot exceed */
@@ -226,10 +227,43 @@ static uint64_t reach_of(const struct passo_path_planner *path, uint32_t index,
 	const uint64_t before =
 	    passo_path_flat(path, index, index, false, passo_path_smaller(item->corner, plain), false);
 	const uint64_t most = before == 0 ? plain : reach_over(item, end, before + behind, behind);
-	const uint64_t reach = passo_path_smaller(item->corner, most);
 
-	/* what was possible with fewer lines still is */
-	return path->anew ? reach : passo_path_larger(reach, passo_path_smaller(item->reach, item->corner));
+	return passo_path_smaller(item->corner, most);
+}
+
+/* Highest square at the start of an item from which the path can come to rest. What was possible with fewer
+ * lines still is, when the path could pass the `next` one's start at a square `was`. But a corner that is
+ * passed faster leaves less for coming down to it: then it is passed more slowly. */
+static uint64_t reach_of(const struct passo_path_planner *path, uint32_t index,
+    const struct passo_path_item *item, struct passo_path_item *next, uint64_t was, uint64_t sharp)
+{
+	const uint64_t kept = path->anew ? 0 : passo_path_smaller(item->reach, item->corner);
+	const uint64_t reach = reach_from(path, index, item, end_square(item, next), sharp);
+
+	if (reach >= kept)
+		return reach;
+#ifndef PASSO_WITHOUT_ROUNDING
+	if (next == NULL || next->rest || item->last || was >= next->reach)
+		return kept;
+	uint64_t low = was, high = next->reach;
+
+	next->reach = low;
+	if (reach_from(path, index, item, low, sharp) < kept) {
+		next->reach = high; /* that is not why */
+		return kept;
+	}
+	for (unsigned i = 0; i < SEARCHED; i++) {
+		next->reach = low + (high - low) / 2;
+		if (reach_from(path, index, item, next->reach, sharp) >= kept)
+			low = next->reach;
+		else
+			high = next->reach;
+	}
+	next->reach = high; /* not 0, which would be a rest */
+#else
+	(void)was;
+#endif
+	return kept;
 }
 
 /* At the end of the newest line a sharp corner may follow, whose arc leaves no slope over this length. */
@@ -275,19 +309,21 @@ void passo_path_look_back(struct passo_path_planner *path)
 {
 	uint32_t final = path->final;
 	uint64_t sharp = path->added > path->planned ? sharp_end(path) : 0;
-	const struct passo_path_item *next = NULL;
-	struct passo_path_item *item = passo_path_item(path, path->added);
+	uint64_t was = 0;
+	struct passo_path_item *next = NULL, *item = passo_path_item(path, path->added);
 
 	for (uint32_t index = path->added; index-- > path->planned && index >= path->final;) {
 		item = (item == path->items ? item + path->capacity : item) - 1;
 		const uint64_t over = within(item, &sharp);
-		const uint64_t reach = passo_path_is_soft(path) ? passo_path_soft_reach(path, index)
-		                                                : reach_of(path, index, item, next, over);
+		const uint64_t reach = passo_path_is_soft(path)
+		                         ? passo_path_soft_reach(path, index)
+		                         : reach_of(path, index, item, next, was, over);
 
 		if ((reach == item->corner || item->rest) && final < index)
 			final = index;
 		if (reach == item->reach && over == 0 && !is_changed(path, index))
 			break;
+		was = item->reach;
 		item->reach = reach;
 		next = item;
 	}
