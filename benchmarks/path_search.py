@@ -29,6 +29,7 @@ BENDS = (0.0, 0.01, 0.1, 0.5, 1.0, 3.4, 5.7, 10.0, 30.0, 45.0, 90.0, 150.0, 179.
 LOOK_AHEADS = (8, 16, 48, 100, 300, 1000)
 POLLS = (500, 700, 1000, 1800, 3000, 8000)
 COUNTS = (1, 2, 3, 5, 10, 30, 100, 400)
+SLOT_CHORDS = 60
 
 Check = Callable[[Case], Measured]
 
@@ -109,6 +110,20 @@ def polylines(draw: Any) -> Piece:
 
 
 @st.composite
+def slots(draw: Any) -> Piece:
+    """Arcs between straights that touch them."""
+    radius, chord, straight = (10 ** draw(st.floats(*ends)) for ends in ((0.2, 1.7), (-1.7, 0.3), (-1, 1.3)))
+    bend = min(math.degrees(chord / radius), 30.0)
+    chords = max(1, min(SLOT_CHORDS, int(draw(st.sampled_from((20, 90, 180))) / bend)))
+    bends = tuple(round(bend, 4) for _ in range(chords + 1))
+    if draw(st.booleans()):
+        bends = (*bends, *(-bend for bend in bends))
+    feed = draw(st.sampled_from((RAPID, 6000.0, 30_000.0)))
+    sizes = (round(straight, 3), *[round(chord, 4)] * chords)
+    return Piece(draw(st.sampled_from((1, 2, 4))) * (chords + 1), sizes, bends, (feed,))
+
+
+@st.composite
 def cases(draw: Any, machines: Sequence[str] = tuple(MACHINES)) -> Case:
     """A path that takes no more than some seconds."""
     machine = draw(st.sampled_from(sorted(machines)))
@@ -119,9 +134,10 @@ def cases(draw: Any, machines: Sequence[str] = tuple(MACHINES)) -> Case:
         "sigmoid",
         *(("jerk", "jerk") if machine in (*JERKS, *JERKS_OF_MOTORS) else ()),
     )
+    kinds = pieces() | arcs() | fans() | straights() | polylines() | slots()
     case = Case(
         machine,
-        tuple(draw(st.lists(pieces() | arcs() | fans() | straights() | polylines(), min_size=1, max_size=4))),
+        tuple(draw(st.lists(kinds, min_size=1, max_size=4))),
         draw(st.sampled_from(profiles)),
         draw(st.sampled_from(LOOK_AHEADS)),
         draw(st.sampled_from(POLLS)),

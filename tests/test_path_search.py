@@ -2,6 +2,7 @@
 """The search for the worst path: what it kept, a short search, and that it finds a planner that is wrong."""
 
 import itertools
+import math
 from dataclasses import replace
 
 import pytest
@@ -64,6 +65,21 @@ def test_random_corners_keep_the_jerk() -> None:
         piece = Piece(24, sizes, tuple(turn * rng.choice((-1, 1)) * part for part in parts))
         look_ahead, heading = rng.choice((16, 48, 300)), rng.choice((0.0, 20.0, 45.0))
         case = Case(rng.choice(JERKS), (piece,), "jerk", look_ahead, 1000, heading)
+        assert beyond(case) == {}, case
+
+
+def test_random_arcs_between_straights_keep_the_jerk() -> None:
+    """Where the curvature changes: of any radius, chords and turn, to one side and the other."""
+    for rng in randoms("arcs", 40):
+        pieces = [Piece(1, (20.0,))]
+        for _ in range(rng.randint(1, 3)):
+            chord, radius = log_uniform(rng, 0.03, 2), log_uniform(rng, 1.6, 50)
+            bend = min(math.degrees(chord / radius), 25)
+            count = max(2, min(80, int(rng.uniform(6, 180) / bend)))
+            pieces.append(Piece(count, (chord,), (bend * rng.choice((-1, 1)),)))
+            if rng.random() < 0.7:
+                pieces.append(Piece(1, (log_uniform(rng, 0.1, 30),)))
+        case = Case(rng.choice(JERKS), tuple(pieces), "jerk", 300, 8000, rng.choice((0.0, 30.0, 45.0)))
         assert beyond(case) == {}, case
 
 

@@ -15,7 +15,7 @@
 /* On an arc at a speed v, of a radius r, the ramp that is steepest at t takes 3 v t / r of the jerk: with
  * half of it along the arc, 0.7 are left. UQ0.16. */
 #define ACROSS 15463u
-/* In square_between(): 11, with a third of the jerk. */
+/* In square_of_change(): 11, with a third of the jerk. */
 #define JUMP 4u
 /* In slow_before(): 4.5, by SOFTNESS in passo_path_jerk.c, with half of the jerk. */
 #define REST 12u
@@ -155,7 +155,7 @@ static int32_t half_turn(const struct passo_path_planner *path, const int32_t *u
 	return unit[axis] / 2 - path->at.direction[axis] / 2;
 }
 
-/* Whether the path turns to the other side. */
+/* Whether the path turns to the other side than at the corner before. */
 static bool turns_back(const struct passo_path_planner *path, const int32_t *unit)
 {
 	int64_t product = 0;
@@ -165,20 +165,47 @@ static bool turns_back(const struct passo_path_planner *path, const int32_t *uni
 	return product < 0;
 }
 
-/* Highest square where a curve passes into one to the other side: the acceleration jumps by `k v^2`, `k` the
- * change of the curvature. Steps that are off by `e` show a jerk of `0.75 k v^2 / w - 8 e / w^3` over a time
- * w, so `k v^3 sqrt(k / e) / 11` at most; `e` is that of chords, and of lines that are merged. The rest of
- * the jerk is for the ramps in the curves, and for a zigzag, whose jumps add up. */
-static uint64_t square_between(const struct passo_path_planner *path, const struct passo_path_corner *corner,
-    uint64_t turn, uint64_t jerk)
+/* Radius, UQ.8 substeps, of the change of the curvature at a corner: from that of the `curve` before it, and
+ * to a straight behind it. */
+static uint64_t radius_of_change(const struct passo_path_planner *path,
+    const struct passo_path_corner *corner, const int32_t *unit, uint64_t turn, bool curve)
 {
 	const struct passo_path_place *at = &path->at;
-	const uint64_t last = passo_mul_div(at->turn, corner->over, at->over);
-	const uint64_t radius = radius_of(corner->over, turn + last);
-	const uint64_t off = path->deviation / OFF_PART
-	                   + passo_path_larger(passo_mul_shift(corner->over, turn, 56),
-			       passo_mul_shift(at->over, at->turn, 56));
-	return soft_square(radius * passo_isqrt64(passo_path_smaller(off, UINT32_MAX) * radius), JUMP * jerk);
+	uint64_t over = corner->over, last = 0, sum = 0;
+
+	if (!passo_path_is_rounded(path)) /* it turns back */
+		return radius_of(over, turn + passo_mul_div(at->turn, over, at->over));
+	if (curve) {
+		over = passo_path_smaller(over, at->over);
+		last = passo_mul_div(over, PASSO_PATH_ONE, at->over);
+	}
+	const uint64_t own = passo_mul_div(over, PASSO_PATH_ONE, corner->over);
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
+		const int64_t change =
+		    half_turn(path, unit, axis) * (int64_t)own - at->half_turn[axis] * (int64_t)last;
+
+		sum += (uint64_t)(change / PASSO_PATH_ONE * (change / PASSO_PATH_ONE));
+	}
+	const uint64_t radius = radius_of(over, 2 * passo_isqrt64(sum));
+	return corner->bends_behind ? radius : passo_path_smaller(radius, radius_of(corner->over, turn));
+}
+
+/* Highest square where the curvature changes: the acceleration jumps by `k v^2`, `k` the change. Steps that
+ * are off by `e` show a jerk of `0.75 k v^2 / w - 8 e / w^3` over a time w, so `k v^3 sqrt(k / e) / 11` at
+ * most; `e` is that of chords, and of lines that are merged. The rest of the jerk is for the ramps in the
+ * curves, and for changes near each other, which add up. */
+static uint64_t square_of_change(const struct passo_path_planner *path,
+    const struct passo_path_corner *corner, const int32_t *unit, uint64_t turn, bool back, uint64_t jerk)
+{
+	const struct passo_path_place *at = &path->at;
+	const bool curve = back || (corner->bends_before && at->bends);
+	const uint64_t radius = radius_of_change(path, corner, unit, turn, curve);
+	uint64_t off = passo_mul_shift(corner->over, turn, 56);
+
+	if (curve)
+		off = passo_path_larger(off, passo_mul_shift(at->over, at->turn, 56));
+	off = passo_path_smaller(off + path->deviation / OFF_PART, UINT32_MAX);
+	return soft_square(radius * passo_isqrt64(off * radius), JUMP * jerk);
 }
 
 /* The curve of the new line, for the next corner. */
@@ -253,17 +280,19 @@ static uint64_t area_between(const struct passo_path_planner *path, uint64_t ove
 	return radius_of(over, PASSO_PATH_ONE) * radius_of(over, path->at.turn + turn);
 }
 
-/* Highest square at a corner behind one to the other side. `part`: 32nds of the jerk of a lone one; another
- * may be part of a turn of several corners, and has a quarter of that, or what a curve has. */
+/* Highest square at a corner of a curve, or `back` to the other side than the one before. `part`: 32nds of
+ * the jerk of a lone one; another may be part of a turn of several corners, and has a quarter of that, or
+ * what the change of the curvature has. */
 static uint64_t square_after(const struct passo_path_planner *path, const struct passo_path_corner *corner,
-    uint64_t turn, uint64_t jerk, uint32_t part)
+    const int32_t *unit, uint64_t turn, bool back, uint64_t jerk, uint32_t part)
 {
 	const bool lone = passo_path_was_lone(path) && !corner->bends_before && !corner->bends_behind;
 	uint64_t square = 0;
 
-	if (lone || passo_path_is_rounded(path))
+	if (back && (lone || passo_path_is_rounded(path)))
 		square = soft_square(area_between(path, corner->over, turn), jerk / (lone ? 32 : 128) * part);
-	return lone ? square : passo_path_larger(square, square_between(path, corner, turn, jerk));
+	return lone ? square
+	            : passo_path_larger(square, square_of_change(path, corner, unit, turn, back, jerk));
 }
 
 /* Radius, UQ.8 substeps, of a corner and the one before it, to the same side: outside of the line between
@@ -301,6 +330,7 @@ uint64_t passo_path_shaped_corner(struct passo_path_planner *path, const struct 
 #ifndef PASSO_WITHOUT_JERK_PATHS
 	const bool back = turns_back(path, unit);
 	const bool rounded = passo_path_is_rounded(path);
+	const bool curved = corner->bends_behind || (corner->bends_before && path->at.bends);
 	const bool pair = soft && rounded && !back && corner->bends_before && path->at.bends;
 
 	if (pair) {
@@ -325,8 +355,8 @@ uint64_t passo_path_shaped_corner(struct passo_path_planner *path, const struct 
 	if (soft) {
 		uint64_t between = PASSO_PATH_SQUARE_MAX;
 
-		if (back && path->at.turn > 0)
-			between = square_after(path, corner, turn, jerk, JERK_PARTS[quarters]);
+		if (back || (curved && rounded))
+			between = square_after(path, corner, unit, turn, back, jerk, JERK_PARTS[quarters]);
 		if (!bends) {
 			const uint64_t passed =
 			    passo_path_smaller(square, passo_path_smaller(before, behind));
@@ -340,7 +370,7 @@ uint64_t passo_path_shaped_corner(struct passo_path_planner *path, const struct 
 			if (!corner->bends_before && last->eased < 2) /* no more than certain() says */
 				last->jerk -= last->jerk / 4;
 		}
-		if (rounded && between < PASSO_PATH_SQUARE_MAX)
+		if (rounded && back)
 			between = slow_between(path, between);
 		else if (pair && area < radius * radius)
 			slow_before(path, fastest);

@@ -3,6 +3,7 @@
  * has the rules.
  */
 #include <stddef.h>
+#include <string.h>
 
 #include "passo_path_private.h"
 
@@ -255,7 +256,7 @@ enum passo_plan_error passo_path_measure(struct passo_path_planner *path, const 
 	if (path->rest) {
 		passo_path_begin_straight(path);
 #ifndef PASSO_WITHOUT_JERK_PATHS
-		path->at.turn = 0;
+		memset(path->at.half_turn, 0, sizeof path->at.half_turn);
 #endif
 		passo_path_begin(path, length, NULL, 0);
 	} else {
