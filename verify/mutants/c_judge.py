@@ -36,6 +36,12 @@ TESTS = (
     *("test_driver_waits", "test_driver_pass", "test_endings", "test_follow", "test_gcode_lathe"),
     *("test_driver_promises", "test_driver_trackers", "test_path_parts_rare", "test_path_promises"),
     *("test_path_pace", "test_path_cuts", "test_path_times", "test_plan_work"),
+    *("test_console", "test_console_channels", "test_console_encoders", "test_console_inputs"),
+    *("test_console_outputs", "test_console_trackers", "test_servo", "test_grbl", "test_grbl_backlash"),
+    *("test_grbl_check", "test_grbl_histories", "test_grbl_home", "test_grbl_lines", "test_grbl_pins"),
+    *("test_grbl_requests", "test_grbl_settings", "test_grbl_states", "test_grbl_threads"),
+    *("test_grbl_tools", "test_axis_letters", "test_motor_encoders", "test_spindle_wait", "test_part"),
+    "test_rigid_tapping",
 )
 RECORD = "test_plan_record"  # no judge: it sees that a plan has changed; for those that live in the end
 LONG = Path(__file__).with_name("c_long.py")

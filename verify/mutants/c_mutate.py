@@ -60,6 +60,8 @@ __attribute__((weak, constructor)) void passo_choose_now_and_in_copies(void)
 	pthread_atfork(0, 0, passo_choose_mutant);
 }
 """
+# What its headers would define.
+OFFSETOF = "#define offsetof(type, member) __builtin_offsetof(type, member)\n"
 DECLARED = """
 extern int passo_mutant;
 extern unsigned char *passo_reached;
@@ -252,6 +254,6 @@ class Parsed:
     def mutated(self, chosen: dict[int, int]) -> str:
         """The source with mutants, as the tree is from then on: the places of changes, and numbers."""
         Mutator(self.source, chosen).run(self.tree)
-        # the compiler checks these in the source; without its headers there is no `offsetof`
+        # the compiler checks these in the source
         self.tree.ext = [item for item in self.tree.ext if not isinstance(item, c_ast.StaticAssert)]
-        return DECLARED + c_generator.CGenerator().visit(self.tree)
+        return DECLARED + OFFSETOF + c_generator.CGenerator().visit(self.tree)

@@ -16,7 +16,12 @@ from passo.toolchain import paths
 from verify.mutants.c_mutate import CHOICE, Change, Parsed, preprocessed
 from verify.mutants.fates import BUILD, hash_of
 
-FOLDERS = {"driver": paths.driver, "planner": paths.planner, "gcode": paths.gcode}
+FOLDERS = {
+    **{"driver": paths.driver, "planner": paths.planner, "gcode": paths.gcode},
+    **{"console": paths.console, "grbl": paths.grbl, "linux": paths.linux},
+}
+# What the parser cannot read: a list of any arguments, and the kernel's headers.
+UNREAD = ("passo_say.c", "passo_linux.c", "passo_linux_socket.c", "passo_linux_spi.c")
 FOLDER = BUILD / "c"
 NUMBERS = 1000  # for each file: more than it has mutants
 
@@ -92,7 +97,11 @@ def drawn(
 
     The folders with them are below `root`; what is there of the same sources is used.
     """
-    files = [file for file in sources(*FOLDERS.values()) if not only or file.name in only]
+    files = [
+        file
+        for file in sources(*FOLDERS.values())
+        if file.name not in UNREAD and (not only or file.name in only)
+    ]
     mutants: list[CMutant] = []
     lines = {file: len(file.read_text(encoding="utf-8").splitlines()) for file in files}
     for name, folder in FOLDERS.items():

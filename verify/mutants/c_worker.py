@@ -23,13 +23,15 @@ from typing import Any
 from passo import compiler
 from passo.toolchain import paths
 
+from verify.mutants.c_source import FOLDERS
+
 # What tests import: before the first mutant.
 AHEAD = ("numpy", "pytest", "passo.build", "passo.driver", "tests.helpers.driver_wire", "tests.helpers.plans")
 
 
 def _switch(root: Path) -> None:
     """Take the mutated folders for the sources; what is built from them is elsewhere."""
-    for name in ("driver", "planner", "gcode"):
+    for name in FOLDERS:
         setattr(paths, name, root / name)
     paths.build = root / "build"
     compiler.STRICT = ("-std=c11", "-w")

@@ -4,8 +4,8 @@
     .venv/bin/python -m verify.mutants.run [--seed N] [--only NAME,...] [--each N] [--count N]
         [--tests NAME,...]
 
-`--only` takes `rtl`, `c`, modules of rtl/ and files of the driver, the planner and G-code; `--tests` files of
-tests, or c_long, which then are all that judges C. A run continues
+`--only` takes `rtl`, `c`, modules of rtl/ and C sources; `--tests` files of tests, or c_long, which then are
+all that judges C. A run continues
 where the last one ended: the fates are kept in build/mutants, and all that was killed is killed once more
 when the sources or the judges are others. A run writes docs/reference/mutants.md, one of a part its rows
 there, if its mutants are those of the page; `--page` writes what is known without a run.
@@ -45,7 +45,7 @@ from verify.soak.program import build as program
 
 SEED = 1
 EACH = 16  # of a module of the RTL, in each core that it is in
-COUNT = 520  # of the C sources
+COUNT = 800  # of the C sources
 
 
 def _say(text: str) -> None:
