@@ -226,7 +226,10 @@ def test_wait_for_a_trigger(bench: Bench) -> None:
     assert bench.ask("wait_trigger").startswith("error: NO_SOURCE: ")
     assert bench.ask(TRIGGER) == "ok"
     assert bench.tell("trigger")["armed"] == "1"
+    bench.ask("run 0.2")
+    began = bench.engine.clock
     assert bench.ask("wait_trigger 50ms") == ("error: TIMEOUT: the trigger has not fired and stays armed")
+    assert (bench.engine.clock - began) / CLOCK_HZ == pytest.approx(0.05, rel=0.1)
     assert bench.ask(f"{JOG} steps=-700") == "ok"
     assert bench.tell("wait_trigger")["position"] == "-500,0,0,0"
     assert bench.tell("status")["moving"] == "1"
@@ -242,6 +245,23 @@ def test_wait_for_a_trigger(bench: Bench) -> None:
     assert "position=-499,0,0,0" in bench.take()
     bench.ask("run 0.1")
     assert bench.tell("status")["fault"] == "TRIGGER"
+
+
+def test_an_alarm_disables_its_own_drive(bench: Bench) -> None:
+    """The other drives stay on; a motion of this one is noted."""
+    assert bench.ask("input axis=1 alarm=active_high alarm_disables=1") == "ok"
+    bench.ask("clear")
+    bench.machine.set("alarm", 2)
+    bench.ask("run 0.01")
+    bench.machine.set("alarm", 0)
+    bench.ask("run 0.01")
+    assert bench.ask("clear") == "ok"
+    said = []
+    for axis in (0, 1, 2):
+        bench.terminal.line(f"jog axis={axis} steps=-5 speed=4000 acceleration=100_000")
+        said.append(bench.take())
+        bench.ask("wait")
+    assert said == ["ok\n", "note: axis 1 is not enabled\nok\n", "ok\n"]
 
 
 def test_estop_and_the_way_back(bench: Bench) -> None:

@@ -4,8 +4,9 @@
 import re
 
 import pytest
+from passo import __version__, registers
 
-from tests.helpers.grbl_console import GrblConsole
+from tests.helpers.grbl_console import GrblConsole, watch
 from tests.helpers.grbl_machine import session
 
 __all__ = ["session"]
@@ -132,6 +133,20 @@ def test_feeds_in_inches(session: GrblConsole) -> None:
     assert session.fields("FS")[0] == pytest.approx(100, abs=0.1)
 
 
+def test_pins_of_the_drives(session: GrblConsole) -> None:
+    """Of all motors; the time of `$1` begins with the rest, not with the motion."""
+    levels = watch(session.engine, "enable")
+    assert session.line("$1=250") == "ok"
+    session.line("G1 X-40 F6000")
+    session.run(0.1)
+    assert levels() == 7
+    session.rest()
+    session.run(0.2)
+    assert levels() == 7
+    session.run(0.2)
+    assert levels() == 0
+
+
 def test_drives_that_rest(session: GrblConsole) -> None:
     """`$1`: off after the time, on for the next motion."""
     assert session.line("$1=50") == "ok"
@@ -145,6 +160,16 @@ def test_drives_that_rest(session: GrblConsole) -> None:
     assert session.fields("MPos")[0] == -1
     session.run(0.1)
     assert not session.grbl.c.driven and session.line("$1=255") == "ok" and session.grbl.c.driven
+
+
+def test_what_it_says_of_itself(session: GrblConsole) -> None:
+    """`$I` and `$`, to the letter."""
+    numbers = (getattr(registers, f"VERSION_{part}_RESET") for part in ("MAJOR", "MINOR", "PATCH"))
+    core = ".".join(map(str, numbers))
+    told = f"[VER:1.1h.passo:]\n[OPT:VNM,48,255]\n[FIRMWARE:Passo {__version__}]\n[CORE:{core}:4000000:0]\nok"
+    assert session.line("$I") == told
+    letters = "$$ $# $G $I $N $x=val $Nx=line $J=line $SLP $C $X $H $RST= ~ ! ? ctrl-x"
+    assert session.line("$") == f"[HLP:{letters}]\nok"
 
 
 def test_messages(session: GrblConsole) -> None:

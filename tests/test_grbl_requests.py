@@ -150,6 +150,20 @@ def test_overrides_stay_in_their_range(session: GrblConsole) -> None:
             assert (c.feed, c.rapid, c.spindle)[index] == percent
 
 
+def test_one_override_acts_without_the_others(session: GrblConsole) -> None:
+    """Told in a report, and the speed is that of the line that moves."""
+    for code, percent in ((b"\x92", [90, 100, 100]), (b"\x96", [90, 50, 100]), (b"\x9b", [90, 50, 90])):
+        session.send(code)
+        reports = (session.status() for _ in range(30))
+        told = next(report["Ov"] for report in reports if "Ov" in report)
+        assert [int(number) for number in told.split(",")] == percent
+    for line, seconds, speed in (("G1 X-6 F2400", 0.1, 2160), ("G0 X-55", 0.45, 6000)):
+        session.line(line)
+        session.run(seconds)
+        assert session.fields("FS")[0] == pytest.approx(speed, rel=0.01)
+        session.rest()
+
+
 def seconds_of(session: GrblConsole, line: str) -> float:
     """From a line to the rest behind it."""
     began = session.engine.clock

@@ -10,7 +10,7 @@ from passo.grbl_setup import SettingsFile, core_for, machine_at
 from passo.machine_file import MachineFile, read_machine
 from passo.run import open_engine
 
-from tests.helpers.grbl_console import GrblConsole
+from tests.helpers.grbl_console import GrblConsole, watch
 from tests.helpers.grbl_machine import MACHINE
 
 ADMIT, SPINDLE, FLOOD = b"\xa3", 1, 4
@@ -28,14 +28,7 @@ def machine(tmp_path_factory: pytest.TempPathFactory) -> MachineFile:
 def session(machine: MachineFile) -> Iterator[GrblConsole]:
     """Unlocked, at its start; Z touches 50 mm below, whatever its travel."""
     with machine_at("model", machine) as engine:
-        drain, engine.levels = engine.drain, 0
-
-        def watched() -> np.ndarray:
-            events = drain()
-            engine.levels = int(events["outputs"][-1]) if len(events) else engine.levels
-            return events
-
-        engine.drain = watched
+        engine.levels = watch(engine, "outputs")
         made = GrblConsole(engine, machine)
         made.line("$X")
         yield made
@@ -43,7 +36,7 @@ def session(machine: MachineFile) -> Iterator[GrblConsole]:
 
 def levels(session: GrblConsole) -> int:
     """Of the digital outputs."""
-    return session.engine.levels
+    return session.engine.levels()
 
 
 def test_outputs_at_rest(session: GrblConsole) -> None:

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from passo.driver import DriverError
-from passo.engine import model_engine
+from passo.engine import model_engine, moves_of
 from passo.native import ffi
 from passo.registers import Cause, State
 from passo.toolchain import paths
@@ -177,6 +177,24 @@ def test_it_goes_on_after_a_stop() -> None:
             servo.call([rest / SETTING.scale, 0, 1])
         assert servo.driver.snapshot().state == State.RUN
         assert servo.driver.positions()[:3] == [rest, 0, 1 * SETTING.scale]
+        pins = servo.pins
+        assert not moves_of(pins, 0)[pins["clock"] > servo.begun].any()
+
+
+def test_more_lines_than_it_can_keep_stop_it() -> None:
+    """A thread that calls without a pause: an error, and the axes come to rest at their commands."""
+    with model_engine(SETTING.core, SETTING.clock_hz) as engine:
+        servo = Servo(engine, SETTING)
+        servo.start()
+        servo.period = 0
+        with pytest.raises(DriverError, match="FULL"):
+            for call in range(2000):
+                servo.call([0.001 * call, 0, 0])
+        with pytest.raises(DriverError, match="NOT_PREPARED"):
+            servo.call([0, 0, 0])
+        servo.wait_until(engine.clock + SETTING.clock_hz / 2)
+        assert servo.driver.snapshot().state == State.STOPPED
+        assert servo.driver.positions()[0] == moves_of(servo.pins, 0).sum() > 0
 
 
 @pytest.mark.parametrize(("stop", "buffer"), [(1000, 2), (10_000, 1), (40_000, 2), (40_000, 1)])

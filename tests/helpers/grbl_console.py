@@ -2,12 +2,26 @@
 """The grbl console on the C model, and what it has said."""
 
 import re
+from collections.abc import Callable
 from typing import Any
 
 from passo.gcode import place_of
 from passo.grbl import Grbl
 
 ROOM = 255  # bytes
+
+
+def watch(engine: Any, pin: str) -> Callable[[], int]:
+    """The levels of a pin at the last change of any, once somebody has drained the events; 0 before."""
+    drain, levels = engine.drain, [0]
+
+    def watched() -> Any:
+        events = drain()
+        levels.extend(int(word) for word in events[pin][-1:])
+        return events
+
+    engine.drain = watched
+    return lambda: levels[-1]
 
 
 class GrblConsole:
