@@ -115,6 +115,22 @@ static uint64_t left_behind(const struct passo_path_planner *path, bool up)
 #endif
 }
 
+/* The square from which an item comes down to one at its end over the rest of it, UQ32.32 substeps; where the
+ * corner there is rounded it is level. */
+static uint64_t before_corner(const struct passo_path_planner *path, const struct passo_path_item *item,
+    uint32_t index, uint64_t end, uint64_t rest)
+{
+#ifdef PASSO_WITHOUT_ROUNDING
+	(void)path, (void)index;
+	return passo_path_before(item, end, rest, 0);
+#else
+	const uint64_t flat =
+	    passo_path_smaller(passo_path_flat(path, index + 1, index, false, end, true), rest);
+
+	return passo_path_before(item, end, rest - flat, flat);
+#endif
+}
+
 /* What is before the end of the ramps. */
 struct ahead {
 	uint64_t square; /* the lowest that is allowed */
@@ -149,7 +165,7 @@ static struct ahead look_ahead(
 		if (index == path->planned)
 			passed -= (uint64_t)path->offset;
 		const uint64_t beyond = passed > length ? passed - length : 0;
-		const uint64_t before = passo_path_before(item, end, beyond, 0);
+		const uint64_t before = before_corner(path, item, index, end, beyond);
 
 		ahead.open = ahead.open || !passo_path_is_settled(path, index);
 		ahead.slope = passo_path_smaller(ahead.slope, item->slope);
