@@ -83,6 +83,22 @@ def test_only_the_inputs_that_are_given_change(bench: Bench) -> None:
     assert bench.ask("input probe=none") == "error: probe must be active_high or active_low"
 
 
+def test_open_sets_up_a_core_that_was_reset(bench: Bench) -> None:
+    """The inputs of each axis, and the probe, are as they were."""
+    assert bench.ask("input axis=2 alarm=active_high") == "ok"
+    with model_engine(bench.engine.parameters, CLOCK_HZ) as fresh:
+        bench.machine.engine = fresh
+        assert bench.ask("move steps=5 profile=linear total_time=1 ramp_time=0.1").startswith("error: ")
+        assert bench.ask("open") == "ok"
+        bench.ask("enable")
+        assert bench.tell(PROBE)["touched"] == "1"
+        assert bench.ask(f"{HOME} distance=-3000") == "ok"
+        bench.machine.set("alarm", 4)
+        bench.ask("run 0.01")
+        assert bench.tell("status")["cause"] == "ALARM"
+        bench.machine.engine = bench.engine
+
+
 def test_home_is_answered_at_its_end(bench: Bench) -> None:
     """The position is that of the switch; other lines wait, short ones are answered."""
     bench.machine.positions[0] = 0
