@@ -21,11 +21,8 @@ import count_words
 
 PAGES = sorted((*paths.docs.rglob("*.md"), *paths.root.glob("*.md")))
 TROUBLE = paths.docs / "trouble.md"
-HEADERS = "".join(
-    path.read_text()
-    for folder in (paths.driver, paths.planner, paths.protocol, paths.gcode, paths.grbl, paths.linux)
-    for path in sorted(folder.glob("*.h"))
-)
+CALLED = (paths.driver, paths.console, paths.planner, paths.protocol, paths.gcode, paths.grbl, paths.linux)
+HEADERS = "".join(path.read_text() for folder in CALLED for path in sorted(folder.glob("*.h")))
 FRAMES = 9
 AFTER_THE_MOTION = 8  # the frame before which the motion ends
 MOTION_CLOCKS = 1_100_000
