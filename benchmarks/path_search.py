@@ -115,9 +115,9 @@ def slots(draw: Any) -> Piece:
     radius, chord, straight = (10 ** draw(st.floats(*ends)) for ends in ((0.2, 1.7), (-1.7, 0.3), (-1, 1.3)))
     bend = min(math.degrees(chord / radius), 30.0)
     chords = max(1, min(SLOT_CHORDS, int(draw(st.sampled_from((20, 90, 180))) / bend)))
-    bends = tuple(round(bend, 4) for _ in range(chords + 1))
+    bends = (round(bend, 4),) * (chords + 1)
     if draw(st.booleans()):
-        bends = (*bends, *(-bend for bend in bends))
+        bends += tuple(-bend for bend in bends)
     feed = draw(st.sampled_from((RAPID, 6000.0, 30_000.0)))
     sizes = (round(straight, 3), *[round(chord, 4)] * chords)
     return Piece(draw(st.sampled_from((1, 2, 4))) * (chords + 1), sizes, bends, (feed,))
