@@ -104,6 +104,7 @@ def worst(host: Host, limits: Limits, settings: PathSettings, rests: bool = Fals
             continue
         end = ramp.begin + ramp.length
         near = max(ramp.first, ramp.last) * tick * LITTLE + 1.5 / host.scale
+        near = min(near, ramp.length / 2)  # it is in no other line than those between its ends
 
         places, speeds, steep = ramp.at()
         asked = np.concatenate(([ramp.begin + near, end - near], places - near, places + near))

@@ -32,6 +32,8 @@ static unsigned put(struct passo_path_part *parts, unsigned count, enum passo_pa
 #ifndef PASSO_WITHOUT_ROUNDING
 /* By this part of its square a path may be slower in a valley. */
 #define VALLEY 128u
+/* What is left of a rounding, by this part of it, has no say. */
+#define HARDLY 16u
 
 /* Whether the path passes the corner at the start of an item at the highest speed there, from which it need
  * not come down any further. A ramp that comes down to there ends within a tick. */
@@ -140,14 +142,13 @@ static unsigned half_parts(const struct passo_path_item *item, unsigned half, ui
 	return count + step_parts(item, half, second, parts[count - 1].square, top, end, parts + count);
 }
 
-/* Without the flat ends, of which that behind is given. */
+/* Without the flat ends, of which that behind is given; no faster than `top`, unless it is already. */
 static unsigned middle_parts(const struct passo_path_planner *path, uint32_t index, uint64_t left,
-    uint64_t behind, uint64_t square, uint64_t end, bool level, struct passo_path_part *parts)
+    uint64_t behind, uint64_t square, uint64_t end, uint64_t top, bool level, struct passo_path_part *parts)
 {
 	const struct passo_path_item *item = passo_path_item(path, index);
 	const uint64_t half = (uint64_t)item->substeps << 31;
 	const uint64_t second = half > behind ? half - behind : 0;
-	uint64_t top = item->top;
 	unsigned count = 0;
 
 	if (level && !passo_path_is_settled(path, index))
@@ -167,7 +168,7 @@ static unsigned middle_parts(const struct passo_path_planner *path, uint32_t ind
 
 /* With the flat ends. */
 static unsigned all_parts(const struct passo_path_planner *path, uint32_t index, uint64_t left,
-    uint64_t before, uint64_t behind, uint64_t square, uint64_t end, bool level,
+    uint64_t before, uint64_t behind, uint64_t square, uint64_t end, uint64_t top, bool level,
     struct passo_path_part *parts)
 {
 	const uint64_t slope = passo_path_item(path, index)->slope;
@@ -177,7 +178,7 @@ static unsigned all_parts(const struct passo_path_planner *path, uint32_t index,
 	unsigned count = put(parts, 0, PASSO_PATH_FLAT, before, square, slope);
 	if (left > before + behind)
 		count += middle_parts(
-		    path, index, left - before - behind, behind, square, end, level, parts + count);
+		    path, index, left - before - behind, behind, square, end, top, level, parts + count);
 	if (count > 0)
 		square = parts[count - 1].square;
 	return put(parts, count, PASSO_PATH_FLAT, behind, passo_path_smaller(square, end), slope);
@@ -194,6 +195,41 @@ static bool falls(const struct passo_path_part *parts, unsigned count, uint64_t 
 	return false;
 }
 
+/* Length before the way down; of all of it, if there is none. */
+static uint64_t before_fall(const struct passo_path_part *parts, unsigned count)
+{
+	uint64_t length = 0;
+
+	for (unsigned i = 0; i < count && parts[i].kind != PASSO_PATH_DOWN; i++)
+		length += parts[i].length;
+	return length;
+}
+
+/* Length behind the way up; no limit if there is none. */
+static uint64_t behind_rise(const struct passo_path_part *parts, unsigned count)
+{
+	uint64_t length = 0;
+
+	while (count > 0 && parts[count - 1].kind != PASSO_PATH_UP)
+		length += parts[--count].length;
+	return count > 0 ? length : UINT64_MAX;
+}
+
+/* The square that the path has on its way up, which begins at `square`, so far before the end. */
+static uint64_t square_before(
+    const struct passo_path_part *parts, unsigned count, uint64_t left, uint64_t square, uint64_t behind)
+{
+	for (unsigned i = 0; i < count && left > behind; i++) {
+		const struct passo_path_part *part = &parts[i];
+		const uint64_t length = passo_path_smaller(part->length, left - behind);
+
+		if (part->square > square)
+			square += passo_mul_div(part->square - square, length, part->length);
+		left -= length;
+	}
+	return square;
+}
+
 /* Whether the path comes down over all of the rounding of the valley at the end of an item. */
 static bool comes_down(const struct passo_path_item *next, uint64_t left, uint64_t square,
     const struct passo_path_part *parts, unsigned count)
@@ -202,7 +238,8 @@ static bool comes_down(const struct passo_path_item *next, uint64_t left, uint64
 	uint64_t length = 0;
 
 	if (left <= turn) /* is within it */
-		return is_valley(next, square);
+		return is_valley(next, square)
+		    && (left <= turn / HARDLY || parts[0].square <= square + square / VALLEY);
 	while (count > 0 && parts[count - 1].kind == PASSO_PATH_DOWN)
 		length += parts[--count].length;
 	return length >= turn;
@@ -253,6 +290,13 @@ static unsigned fall_evenly(struct passo_path_part *parts, unsigned count, uint6
 	return count;
 }
 
+/* Highest square from which an item can come down to its end, if it does so behind a length only. */
+static uint64_t high_behind(
+    const struct passo_path_item *item, uint64_t left, uint64_t length, uint64_t behind, uint64_t end)
+{
+	return passo_path_before(item, end, left - passo_path_smaller(left, length + behind), behind);
+}
+
 /* Length over which a way of less slope replaces a level part at a corner that turns over a length, and the
  * steep way beside it. A level part takes longest, so it leaves most for the corner, but it costs most: so
  * between. */
@@ -271,11 +315,11 @@ static uint64_t share_of(uint64_t flat, uint64_t over, uint64_t left)
 unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index, uint64_t left,
     uint64_t square, bool level, struct passo_path_part *parts)
 {
-	uint64_t end = passo_path_end_square(path, index);
-#ifdef PASSO_WITHOUT_ROUNDING
-	return all_parts(path, index, left, 0, 0, square, end, level, parts);
-#else
 	const struct passo_path_item *item = passo_path_item(path, index);
+	uint64_t end = passo_path_end_square(path, index), top = item->top;
+#ifdef PASSO_WITHOUT_ROUNDING
+	return all_parts(path, index, left, 0, 0, square, end, top, level, parts);
+#else
 	const struct passo_path_item *next = passo_path_item(path, index + 1);
 	const uint64_t passed = ((uint64_t)item->substeps << 32) - left;
 	const uint64_t corner = passed > 0 ? passo_path_passing(path, square) : square;
@@ -286,24 +330,42 @@ unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index,
 	const uint64_t falling = spread(ended, turn_of(next));
 	uint64_t before = share_of(begun, rising, over);
 	uint64_t behind = share_of(ended, falling, left);
-	unsigned count = all_parts(path, index, left, before, behind, square, end, level, parts);
+	unsigned count = all_parts(path, index, left, before, behind, square, end, top, level, parts);
 	const bool valley = index + 1 < path->added && is_valley(next, end);
+	const uint64_t high = passo_path_flat(path, index, index, false, corner, true);
 
-	if (falls(parts, count, square)) {
-		const uint64_t flat = passo_path_flat(path, index, index, false, corner, true);
-
-		before = flat > passed ? flat - passed : 0;
-		count = all_parts(path, index, left, before, behind, square, end, level, parts);
+	/* beside the corner at its start it does not come down for so long, so it rises no higher than it can
+	 * come down from behind that */
+	uint64_t most = UINT64_MAX;
+	if (before > 0 && falls(parts, count, square))
+		most = square;
+	else if (high > passed && before_fall(parts, count) < high - passed)
+		most = high_behind(item, left, high - passed, behind, end);
+	if (most < UINT64_MAX) {
+		if (most <= square + square / VALLEY) {
+			before = 0;
+			most = square;
+		}
+		top = passo_path_smaller(top, most);
+		count = all_parts(path, index, left, before, behind, square, end, top, level, parts);
 	}
 	/* where it comes up to the corner, that is no valley, nor does it need more than at the highest speed
 	 * there */
 	if (valley ? !comes_down(next, left, square, parts, count) : parts[count - 1].square < end) {
 		if (valley)
 			end -= end / VALLEY * 2;
-		count = all_parts(path, index, left, before, 0, square, end, level, parts);
+		count = all_parts(path, index, left, before, 0, square, end, top, level, parts);
 		behind = passo_path_flat(path, index + 1, index, true, parts[count - 1].square, false);
 		if (behind > 0)
-			count = all_parts(path, index, left, before, behind, square, end, level, parts);
+			count = all_parts(path, index, left, before, behind, square, end, top, level, parts);
+	} else if (!valley) {
+		/* beside that at its end it does not rise to come down again */
+		const uint64_t low = passo_path_flat(path, index + 1, index, true, end, false);
+
+		if (behind_rise(parts, count) < low) {
+			top = square_before(parts, count, left, square, low);
+			count = all_parts(path, index, left, before, behind, square, end, top, level, parts);
+		}
 	}
 	if (before > 0)
 		count = rise_evenly(parts, count, over, square);
