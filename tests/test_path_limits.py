@@ -378,7 +378,7 @@ def corner_of(settings: PathSettings, one: Line, other: Line) -> tuple[float, fl
     sine = math.sqrt(max(0, 1 - cosine**2))
     arc = float(settings.junction_deviation) * 2 * sine * (1 + sine) / cosine
     sides = [min(before / 2, arc), min(behind / 2, arc)]
-    sides = [min(sides[0], (arc + sides[1]) / 2), min(sides[1], (arc + sides[0]) / 2)]
+    sides = [min(a, max(17 / 16 * b, 3 / 8 * arc + b / 2)) for a, b in (sides, sides[::-1])]
     over = min(arc, sum(sides))
     squares = [1e30]
     for axis, part in zip(settings.axes, np.abs(change), strict=True):

@@ -19,12 +19,19 @@ static uint64_t half_arc(const struct passo_path_planner *path, uint64_t turn)
 	    path->deviation, 2 * sine * (PASSO_PATH_ONE + sine) / cosine, PASSO_PATH_UNIT_BITS);
 }
 
+/* The farthest that a rounding reaches on one side of a corner, by the other one: on one side alone it leaves
+ * the line for good, and corners near each other, to one side, are rounded as one. */
+static uint64_t beside(uint64_t other, uint64_t arc)
+{
+	return passo_path_larger(other + other / 16, arc / 8 * 3 + other / 2);
+}
+
 static struct passo_path_rounding rounding_of(uint64_t arc, uint64_t before, uint64_t behind)
 {
 	before = passo_path_smaller(before / 2, arc);
 	behind = passo_path_smaller(behind / 2, arc);
 	return (struct passo_path_rounding){
-	    passo_path_smaller(before, (arc + behind) / 2), passo_path_smaller(behind, (arc + before) / 2)};
+	    passo_path_smaller(before, beside(behind, arc)), passo_path_smaller(behind, beside(before, arc))};
 }
 
 /* The halves of the lines beside a corner; where the rounding ends before the middle of a line, it belongs to

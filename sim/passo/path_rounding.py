@@ -14,11 +14,14 @@ behind it, so the curvature there is `c / (p + q)`. `p` and `q` are at most
 
 * half of the line: the corner of a finely divided curve is a piece of that curve, from the middle of one
   line to the middle of the next;
-* `l`; and of one side `l / 2` and half of the other one, since a rounding on one side alone leaves the
-  line for good.
+* `l`; and 17/16 of the other side, or `3 l / 8` and half of that: a rounding on one side alone leaves
+  the line for good. Of one corner, with `l / 2`, the path would be off no farther; but of corners near each
+  other, to one side, the pins would show more than the limit of the acceleration.
+
+The path is off its lines by what a rounding of one corner may have, with `l / 2` in place of `3 l / 8`.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -67,7 +70,8 @@ class Rounded:
     def off_along(self, directions: np.ndarray) -> np.ndarray:
         """corner x direction: by how much the path may be off the lines along it, on either side."""
         size = np.linalg.norm(self.turn, axis=1)
-        least, most = np.minimum(self.before, self.behind), np.maximum(self.before, self.behind)
+        before, behind = _rounding(self.length, self.arc, lambda other: (self.arc + other) / 2)
+        least, most = np.minimum(before, behind), np.maximum(before, behind)
         found = np.minimum(size * np.maximum((least + most) / 16, (most - least) / 4), self.deviation)
         found = np.where(self.alone, self.deviation, found)
         return np.abs(self.turn @ directions.T) * (found / np.maximum(size, STRAIGHT))[:, None]
@@ -127,6 +131,14 @@ def _is_line(points: np.ndarray, off: float) -> bool:
     return bool((side <= off).all() and (np.diff(along) > 0).all())
 
 
+def _rounding(
+    length: np.ndarray, arc: np.ndarray, most: Callable[[np.ndarray], np.ndarray]
+) -> tuple[np.ndarray, np.ndarray]:
+    """How far each corner is rounded before and behind it; `most` of one side, by the other one."""
+    before, behind = np.minimum(length[:-1] / 2, arc), np.minimum(length[1:] / 2, arc)
+    return np.minimum(before, most(behind)), np.minimum(behind, most(before))
+
+
 def arc_length(turn: np.ndarray, junction_deviation: float) -> np.ndarray:
     """What the arcs within the deviation advance by while they turn."""
     cosine = np.minimum(np.linalg.norm(turn, axis=1) / 2, 1)
@@ -144,8 +156,9 @@ def rounded(lines: Sequence[Line], settings: PathSettings, begin: Sequence[float
     unit = delta / length[:, None]
     turn = np.diff(unit, axis=0)
     arc = arc_length(turn, permitted)
-    before, behind = np.minimum(length[:-1] / 2, arc), np.minimum(length[1:] / 2, arc)
-    before, behind = np.minimum(before, (arc + behind) / 2), np.minimum(behind, (arc + before) / 2)
+    before, behind = _rounding(
+        length, arc, lambda other: np.maximum(other * 17 / 16, arc * 3 / 8 + other / 2)
+    )
     return Rounded(
         *(points, feed, kept, unit, length, np.cumsum(length), turn, arc, before, behind, permitted)
     )
