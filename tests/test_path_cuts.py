@@ -52,7 +52,7 @@ def test_a_straight_that_is_cut_takes_as_long() -> None:
     assert 0.998 < half < 1.001 and most < 1.02
 
 
-SEEDS = (22, 164, 168, 190, 199, 207, 211, 231, 240, 302, 341, 369, 382, 442, 559, 609, 671, 885)
+SEEDS = (22, 168, 199, 207, 211, 231, 240, 267, 302, 341, 369, 382, 384, 442, 559, 609, 671, 747, 885)
 HARDLY = 1e-9  # mm: a junction deviation, less than the targets' last bits
 
 
