@@ -105,7 +105,7 @@ static bool ends_straight(const struct passo_path_planner *path)
 	(void)path;
 	return false;
 #else
-	return passo_path_spans(path) && path->at.first + 1 != path->added;
+	return passo_path_is_rounded(path) && path->at.first + 1 != path->added;
 #endif
 }
 

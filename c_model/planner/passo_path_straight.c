@@ -258,7 +258,8 @@ bool passo_path_goes_on(const struct passo_path_planner *path, uint64_t turn, ui
 	const uint64_t off =
 	    passo_mul_shift((uint64_t)passo_isqrt64(turn) << 8, shorter, PASSO_PATH_UNIT_BITS);
 
-	return passo_path_spans(path) && off <= path->substeps_per_mm >> 7; /* 2^-31 mm, in UQ.24 substeps */
+	return passo_path_is_rounded(path)
+	    && off <= path->substeps_per_mm >> 7; /* 2^-31 mm, in UQ.24 substeps */
 }
 
 void passo_path_end_straight(struct passo_path_planner *path)
