@@ -19,19 +19,20 @@ static uint64_t half_arc(const struct passo_path_planner *path, uint64_t turn)
 	    path->deviation, 2 * sine * (PASSO_PATH_ONE + sine) / cosine, PASSO_PATH_UNIT_BITS);
 }
 
-/* The farthest that a rounding reaches on one side of a corner, by the other one: on one side alone it leaves
- * the line for good, and corners near each other, to one side, are rounded as one. */
-static uint64_t beside(uint64_t other, uint64_t arc)
-{
-	return passo_path_larger(other + other / 16, arc / 8 * 3 + other / 2);
-}
-
-static struct passo_path_rounding rounding_of(uint64_t arc, uint64_t before, uint64_t behind)
+/* On one side alone a rounding leaves the line for good, and corners near each other, to one side, are
+ * rounded as one: so it reaches little farther there than on the other side. */
+static struct passo_path_rounding rounding_of(
+    const struct passo_path_planner *path, uint64_t arc, uint64_t before, uint64_t behind)
 {
 	before = passo_path_smaller(before / 2, arc);
 	behind = passo_path_smaller(behind / 2, arc);
+	const uint64_t least = passo_path_smaller(before, behind);
+	uint64_t most = (arc + least) / 2;
+
+	if (passo_path_is_rounded(path))
+		most = passo_path_larger(least + least / 16, arc / 8 * 3 + least / 2);
 	return (struct passo_path_rounding){
-	    passo_path_smaller(before, beside(behind, arc)), passo_path_smaller(behind, beside(before, arc))};
+	    passo_path_smaller(before, most), passo_path_smaller(behind, most)};
 }
 
 /* The halves of the lines beside a corner; where the rounding ends before the middle of a line, it belongs to
@@ -203,7 +204,8 @@ static void span_lines(struct passo_path_planner *path, const struct passo_path_
 		rounding->before = passo_path_spread(path, meeting, corner, false, rounding->before, NULL);
 		rounding->behind = passo_path_spread(path, meeting, corner, true, rounding->behind, NULL);
 		if (i == 0)
-			*rounding = rounding_of(corner->arc, 2 * rounding->before, 2 * rounding->behind);
+			*rounding =
+			    rounding_of(path, corner->arc, 2 * rounding->before, 2 * rounding->behind);
 	}
 #endif
 }
@@ -213,7 +215,7 @@ uint64_t passo_path_round(struct passo_path_planner *path, const struct passo_pa
 {
 	struct passo_path_rounding *rounding = &corner->rounding;
 
-	*rounding = rounding_of(corner->arc, meeting->before, meeting->behind);
+	*rounding = rounding_of(path, corner->arc, meeting->before, meeting->behind);
 	span_lines(path, meeting, corner, item);
 	const uint64_t both = rounding->before + rounding->behind;
 	corner->over = passo_path_smaller(corner->arc, both) << (PASSO_PATH_UNIT_BITS - 16);

@@ -315,11 +315,13 @@ static uint64_t share_of(uint64_t flat, uint64_t over, uint64_t left)
 unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index, uint64_t left,
     uint64_t square, bool level, struct passo_path_part *parts)
 {
-	const struct passo_path_item *item = passo_path_item(path, index);
-	uint64_t end = passo_path_end_square(path, index), top = item->top;
+	uint64_t end = passo_path_end_square(path, index);
 #ifdef PASSO_WITHOUT_ROUNDING
-	return all_parts(path, index, left, 0, 0, square, end, top, level, parts);
+	return all_parts(
+	    path, index, left, 0, 0, square, end, passo_path_item(path, index)->top, level, parts);
 #else
+	const struct passo_path_item *item = passo_path_item(path, index);
+	uint64_t top = item->top;
 	const struct passo_path_item *next = passo_path_item(path, index + 1);
 	const uint64_t passed = ((uint64_t)item->substeps << 32) - left;
 	const uint64_t corner = passed > 0 ? passo_path_passing(path, square) : square;
