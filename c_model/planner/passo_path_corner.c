@@ -261,7 +261,7 @@ uint64_t passo_path_limit_corner(
 
 	passo_path_restore_start(path);
 	if (!passo_path_find_turn(path, path->at.direction, unit, &corner)
-	    || passo_path_goes_on(path, corner.turn, length)) {
+	    || passo_path_goes_on(path, corner.turn, length, item->feed)) {
 		go_on(path, unit, item);
 		item->bend = PASSO_PATH_SQUARE_MAX;
 		passo_path_prolong(path, item, length);

@@ -423,9 +423,10 @@ static inline void passo_path_begin(
 	(void)path, (void)length, (void)meeting, (void)arc;
 }
 
-static inline bool passo_path_goes_on(const struct passo_path_planner *path, uint64_t turn, uint64_t length)
+static inline bool passo_path_goes_on(
+    const struct passo_path_planner *path, uint64_t turn, uint64_t length, uint32_t feed)
 {
-	(void)path, (void)turn, (void)length;
+	(void)path, (void)turn, (void)length, (void)feed;
 	return false;
 }
 #else
@@ -479,8 +480,9 @@ static inline uint64_t passo_path_ahead(const struct passo_path_planner *path)
 	return path->at.ahead;
 }
 
-/* Whether a turn (UQ2.60, squared) beside a line of a length is that of targets in 2^-32 mm alone. */
-bool passo_path_goes_on(const struct passo_path_planner *path, uint64_t turn, uint64_t length);
+/* Whether a turn (UQ2.60, squared) beside a line of a length is that of targets in 2^-32 mm alone. With one
+ * feed and shaped ramps it is a corner all the same: there a curve that turns to the other side has one. */
+bool passo_path_goes_on(const struct passo_path_planner *path, uint64_t turn, uint64_t length, uint32_t feed);
 #endif
 
 /* The path rests at the start of an item, if it is hardly faster there. */

@@ -252,13 +252,14 @@ static void round_start(
 	unsettle(path);
 }
 
-bool passo_path_goes_on(const struct passo_path_planner *path, uint64_t turn, uint64_t length)
+bool passo_path_goes_on(const struct passo_path_planner *path, uint64_t turn, uint64_t length, uint32_t feed)
 {
+	const bool spans = passo_path_spans(path) || passo_path_item(path, path->added - 1)->feed != feed;
 	const uint64_t shorter = passo_path_smaller(length, path->at.length);
 	const uint64_t off =
 	    passo_mul_shift((uint64_t)passo_isqrt64(turn) << 8, shorter, PASSO_PATH_UNIT_BITS);
 
-	return passo_path_is_rounded(path)
+	return passo_path_is_rounded(path) && spans
 	    && off <= path->substeps_per_mm >> 7; /* 2^-31 mm, in UQ.24 substeps */
 }
 
