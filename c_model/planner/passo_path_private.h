@@ -37,6 +37,9 @@
  * slopes that differ a little, is a little above it. */
 #define PASSO_PATH_STEEPER 64u
 
+/* Less than this part of a rounding in a line is none. */
+#define PASSO_PATH_HARDLY 16u
+
 /* A straight part of the profile: the square of the velocity changes evenly over the path. */
 enum passo_path_kind { PASSO_PATH_UP, PASSO_PATH_FLAT, PASSO_PATH_DOWN };
 

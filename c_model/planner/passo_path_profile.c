@@ -32,8 +32,6 @@ static unsigned put(struct passo_path_part *parts, unsigned count, enum passo_pa
 #ifndef PASSO_WITHOUT_ROUNDING
 /* By this part of its square a path may be slower in a valley. */
 #define VALLEY 128u
-/* What is left of a rounding, by this part of it, has no say. */
-#define HARDLY 16u
 
 /* Whether the path passes the corner at the start of an item at the highest speed there, from which it need
  * not come down any further. A ramp that comes down to there ends within a tick. */
@@ -239,7 +237,7 @@ static bool comes_down(const struct passo_path_item *next, uint64_t left, uint64
 
 	if (left <= turn) /* is within it */
 		return is_valley(next, square)
-		    && (left <= turn / HARDLY || parts[0].square <= square + square / VALLEY);
+		    && (left <= turn / PASSO_PATH_HARDLY || parts[0].square <= square + square / VALLEY);
 	while (count > 0 && parts[count - 1].kind == PASSO_PATH_DOWN)
 		length += parts[--count].length;
 	return length >= turn;

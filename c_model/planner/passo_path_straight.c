@@ -17,8 +17,6 @@
 #define CORNER_PARTS 2u
 /* All of it bends, unless so much is not covered. */
 #define FAR_PARTS 3u
-/* Less of a rounding in a line is none. */
-#define HARDLY 16u
 
 static struct passo_path_item *item_at(
     const struct passo_path_planner *path, const struct passo_path_meeting *meeting, uint32_t index)
@@ -111,7 +109,7 @@ uint64_t passo_path_spread(struct passo_path_planner *path, const struct passo_p
 		index = farther(index, behind);
 		length = length_of(path, meeting, index);
 		if (reach < passed + length / parts) {
-			if (reach - passed >= reach / HARDLY) {
+			if (reach - passed >= reach / PASSO_PATH_HARDLY) {
 				corner->point[behind].index = behind ? index : index + 1;
 				corner->point[behind].left = reach - passed;
 			}
