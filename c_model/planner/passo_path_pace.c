@@ -7,7 +7,8 @@
  * goes to the lowest speed of all that is before it until the end of the one after it. If the profile comes
  * down to there only after the ramp, it does so in less time, so the ramp is not steeper.
  *
- * Of the lines, each takes as long as its share of a frame; those behind a long one may take less.
+ * Of the lines, each takes as long as its share of a frame; those behind a long one may take less. Those of a
+ * small look-ahead are known so late that the path may have to come to rest within them: they take longer.
  */
 #include "passo_path_private.h"
 
@@ -18,8 +19,8 @@
 #define ROUNDED 20u
 
 /* The room for a frame is seen by one poll and used by the next, and a frame of lines may be under way then:
- * what is queued behind the room lasts for three polls. Of three frames two are for lines; one in four is
- * spare. Of ramps that are limited together the known lines hold twice as many. */
+ * what is queued behind the room lasts for three polls, and so do the known lines, which hold twice as many
+ * ramps as are limited together. Of three frames two are for lines; one in four is spare. */
 void passo_path_pace(
     struct passo_path_planner *path, uint32_t queued, uint32_t lines_queued, uint32_t lines_sent)
 {
@@ -29,8 +30,10 @@ void passo_path_pace(
 	const uint64_t known = passo_path_smaller(path->capacity / 2 - 1, PASSO_PATH_PACED);
 	const uint32_t together = (uint32_t)passo_path_larger(passo_path_smaller(queued, known), 1);
 	const uint64_t ramps = 3 * together * poll / passo_path_larger(queued, 1) + 1;
-	const uint64_t line = passo_path_larger(
-	    2 * poll / passo_path_larger(lines_sent, 1), 4 * poll / passo_path_larger(lines_queued, 1));
+	/* two polls for those of a frame, four for those queued, three for those known */
+	const uint64_t share = passo_path_smaller(
+	    passo_path_smaller(6 * lines_sent, 3 * lines_queued), 4 * (path->capacity - 2));
+	const uint64_t line = 12 * poll / passo_path_larger(share, 1);
 
 	path->waits = false;
 	path->paced = together;
