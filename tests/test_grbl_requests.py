@@ -53,6 +53,21 @@ def test_the_door_in_a_jog(session: GrblConsole) -> None:
 # ------------------------------------------------------------------------------------- jogs and their end
 
 
+@pytest.mark.parametrize("pressed", [0.05, 0.5])
+@pytest.mark.parametrize("code", [b"\x85", b"\x18"])
+def test_an_estop_on_the_way_to_rest_is_an_alarm(session: GrblConsole, code: bytes, pressed: float) -> None:
+    """Steps may be lost: whatever the way to rest was for, and however short it is pressed."""
+    session.send(b"$J=G91 X-50 F12000\n", 0.35)
+    session.take()
+    session.send(code, 0.01)
+    session.engine.set("estop_n", 0)
+    session.run(pressed)
+    session.engine.set("estop_n", 1)
+    session.run(0.5)
+    assert session.log.count("ALARM:3") == 1 and session.status()["state"] == "Alarm"
+    assert session.line("G0 X0") == "error:9"
+
+
 @pytest.mark.parametrize("code", [b"\x85", b"!"])
 def test_a_jog_just_after_the_end_of_another_waits_and_runs(session: GrblConsole, code: bytes) -> None:
     """So does any other line."""

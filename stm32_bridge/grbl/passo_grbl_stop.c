@@ -125,9 +125,12 @@ static bool clear(struct passo_grbl *grbl)
 {
 	struct passo *passo = grbl->player->feed->passo;
 
-	if (passo->has_inputs && passo_fault(passo) == PASSO_ERROR_ESTOP
-	    && passo_clear_estop(passo) != PASSO_OK)
-		return false;
+	if (passo_fault(passo) == PASSO_ERROR_ESTOP) {
+		if (!grbl->locked) /* it came on the way to rest, and cut that off */
+			passo_grbl_fail(grbl, PASSO_GRBL_ABORTED, PASSO_GCODE_LOCKED);
+		if (passo->has_inputs && passo_clear_estop(passo) != PASSO_OK)
+			return false;
+	}
 #ifndef PASSO_CARTESIAN
 	if (passo_fault(passo) == PASSO_ERROR_FOLLOWING)
 		adopt(grbl);
