@@ -3,7 +3,7 @@
 
 import pytest
 
-from tests.helpers.grbl_console import GrblConsole
+from tests.helpers.grbl_console import GrblConsole, watch
 from tests.helpers.grbl_machine import session, x_of
 
 __all__ = ["session"]
@@ -36,6 +36,20 @@ def test_check_mode_checks_the_travel(session: GrblConsole) -> None:
         session.run(0.1)
         assert session.status()["state"] == "Alarm" and x_of(session) == 0
         session.line("$X")
+
+
+def test_an_alarm_of_check_mode_leaves_no_trace(session: GrblConsole) -> None:
+    """The modes are those of before, and so are the outputs: the spindle of the program does not turn."""
+    before, outputs = session.line("$G"), watch(session.engine, "outputs")
+    session.line("$20=1")
+    session.line("$C")
+    assert session.line("G20 G91 M3 S800 F100") == "ok"
+    assert session.line("G0 X-1000").startswith("ALARM:2")
+    session.run(0.2)
+    session.line("$X")
+    session.rest()
+    session.take()
+    assert session.line("$G") == before and outputs() == 0
 
 
 def test_check_mode_leaves_no_trace(session: GrblConsole) -> None:

@@ -54,11 +54,13 @@ void passo_grbl_begin_stop(struct passo_grbl *grbl)
 	grbl->stopping = true;
 }
 
-/* Check mode leaves no trace. */
+/* Check mode leaves no trace: neither offsets nor modes, which would drive the outputs. */
 static void leave_check(struct passo_grbl *grbl)
 {
-	if (grbl->checks)
+	if (grbl->checks) {
 		passo_gcode_set_offsets(grbl->player->gcode, &grbl->stored.offsets);
+		passo_gcode_reset(grbl->player->gcode);
+	}
 	grbl->checks = grbl->player->checks = false;
 }
 
