@@ -215,6 +215,19 @@ def test_lengths_by_the_probe(session: GrblConsole) -> None:
     assert session.fields("MPos")[2] == 3.5
 
 
+def test_a_locked_machine_touches_nothing(session: GrblConsole) -> None:
+    """As no other line moves it, and no hold would stop it."""
+    session.line("G0 Z-40")
+    session.rest()
+    session.send(b"G0 X-50\n", 0.1)
+    session.send(b"\x18", 0.5)
+    assert session.status()["state"] == "Alarm"
+    before = session.fields("MPos")
+    assert session.line("$TPW") == "error:9"
+    session.run(0.3)
+    assert session.fields("MPos") == before
+
+
 def test_a_probe_that_fails(session: GrblConsole) -> None:
     """No contact within the distance: an error, no alarm, the length stays."""
     session.line("$342=5")

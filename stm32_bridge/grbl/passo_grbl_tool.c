@@ -99,6 +99,8 @@ enum passo_gcode_error passo_grbl_touch(struct passo_grbl *grbl)
 {
 	const struct passo_gcode *gcode = grbl->player->gcode;
 
+	if (grbl->locked)
+		return PASSO_GCODE_LOCKED;
 	if (!has_tool_axis(grbl) || !grbl->setup->probe)
 		return PASSO_GCODE_TOOL_LENGTH_UNKNOWN;
 	move(grbl, TOUCH_SEEK,

@@ -102,7 +102,7 @@ static void report(bool crystal, bool crc_unit)
 	uart_write(board_chip());
 	uart_write(LEFT_OUT "]\r\n");
 	if (!crystal)
-		say("No crystal: 64 MHz from the internal oscillator");
+		say("No crystal: internal 64 MHz");
 	if (!crc_unit)
 		say("CRC unit faulty: CRCs in software");
 }
