@@ -39,7 +39,7 @@ def test_check_mode_checks_the_travel(session: GrblConsole) -> None:
 
 
 def test_an_alarm_of_check_mode_leaves_no_trace(session: GrblConsole) -> None:
-    """The modes are those of before, and so are the outputs: the spindle of the program does not turn."""
+    """Modes are those of a reset, as they were, so the spindle of the program does not turn."""
     before, outputs = session.line("$G"), watch(session.engine, "outputs")
     session.line("$20=1")
     session.line("$C")

@@ -54,7 +54,7 @@ void passo_grbl_begin_stop(struct passo_grbl *grbl)
 	grbl->stopping = true;
 }
 
-/* Check mode leaves no trace: neither offsets nor modes, which would drive the outputs. */
+/* Check mode leaves no trace: offsets are those stored, modes those of a reset, as outputs follow them. */
 static void leave_check(struct passo_grbl *grbl)
 {
 	if (grbl->checks) {
@@ -122,13 +122,14 @@ static void adopt(struct passo_grbl *grbl)
 }
 #endif
 
-/* After e-stop, alarm, watchdog and following error as well. Whether the channel can move again. */
+/* After e-stop, alarm, watchdog and following error as well. Whether the channel can move again. Only here an
+ * e-stop shows that came after another stop. */
 static bool clear(struct passo_grbl *grbl)
 {
 	struct passo *passo = grbl->player->feed->passo;
 
 	if (passo_fault(passo) == PASSO_ERROR_ESTOP) {
-		if (!grbl->locked) /* it came on the way to rest, and cut that off */
+		if (!grbl->locked) /* it cut off the way to rest */
 			passo_grbl_fail(grbl, PASSO_GRBL_ABORTED, PASSO_GCODE_LOCKED);
 		if (passo->has_inputs && passo_clear_estop(passo) != PASSO_OK)
 			return false;
