@@ -98,6 +98,23 @@ def test_the_figures_of_a_program(tmp_path: Path) -> None:
     assert bound["acceleration of X"] > 0.4 and "speed of X" not in bound
 
 
+@pytest.mark.parametrize("look_ahead", [4, 8, 48, 300])
+def test_the_figures_of_a_tool_are_its_own(tmp_path: Path, look_ahead: int) -> None:
+    """Cycles, of which one poll adds several lines and sends them: as of each tool alone."""
+    own = "M6 T{0}\nG81 X{0} Y2 Z-3 R2 F60\nX5\nX{1}\nG80\nG0 Z{0}\n"
+    text, count = "".join(own.format(tool, 3 * tool) for tool in (1, 2, 3)), own.count("\n")
+    course = course_of(*program(tmp_path, text + "M2\n"), look_ahead)
+    tools = course.tools()
+    assert [tool.pop("tool") for tool in tools] == [1, 2, 3]
+    for number, found in enumerate(tools):
+        assert found["feed_mm"] == pytest.approx(3 * 5) and found["feed_seconds"] == pytest.approx(15, 0.01)
+        alone = Lines(number * count + 1, (number + 1) * count)
+        (single,) = course_of(*program(tmp_path, text, alone), look_ahead).tools()
+        assert found == pytest.approx({name: single[name] for name in found}, rel=SHARE)
+    sources = course.planned.lines["source"].tolist()
+    assert sources == sorted(sources)
+
+
 def test_places_and_speeds_in_time(tmp_path: Path) -> None:
     """A line of 40 mm at 100 mm/s and 1000 mm/s^2, from rest to rest: 5 mm up, 30 mm, 5 mm down."""
     course = course_of(*program(tmp_path, "G1 F6000 X40\n"))

@@ -60,10 +60,23 @@ static size_t copy(const struct list *list, void *items)
 
 /* ---------------------------------------------------------------------------------------- the play ---- */
 
-/* The core has a line: of the item that the planner still knows. */
+/* Notes which line of the program the new lines of the path are of. */
+static void note_origins(struct passo_preview *preview)
+{
+	const uint32_t added = preview->program.path.added;
+
+	for (; preview->noted < added; preview->noted++)
+		preview->origin[preview->noted % preview->config.look_ahead] =
+		    (struct origin){preview->taken - 1u, preview->program.gcode.loaded};
+	preview->noted = added; /* a line may have been taken back */
+}
+
+/* The core has a line: of the item that the planner still knows. The poll that sends it may have added it. */
 static void keep_line(void *context, const struct passo_line *line)
 {
 	struct passo_preview *preview = context;
+
+	note_origins(preview);
 	const size_t place = preview->lines.count % preview->config.look_ahead;
 	const struct passo_path_item *item = &preview->items[place];
 	struct passo_preview_line made = {.substeps = line->substeps,
@@ -169,15 +182,11 @@ static void refuse(struct passo_preview *preview, int32_t error)
 	    !append(&preview->refusals, &(struct passo_preview_refusal){preview->taken - 1u, error});
 }
 
-/* Polls, and notes which line of the program the new lines of the path are of. */
 static void poll(struct passo_preview *preview)
 {
-	const struct passo_path_planner *path = &preview->program.path;
 	const enum passo_error error = passo_program_poll(&preview->program);
 
-	while (preview->noted != path->added)
-		preview->origin[preview->noted++ % preview->config.look_ahead] =
-		    (struct origin){preview->taken - 1u, preview->program.gcode.loaded};
+	note_origins(preview);
 	if (error != PASSO_OK)
 		refuse(preview, -1 - (int32_t)error);
 }
