@@ -105,9 +105,12 @@ def test_bilinear() -> None:
 def test_file(tmp_path: Path) -> None:
     """Points in any order, or the log of a sender; a bad file is named."""
     path = tmp_path / "map.csv"
-    path.write_text("x,y,z\n0,0,1\n10,0,2 # a corner\n10;20;4\n\n0 20 3\n")
+    text = "x,y,z\n0,0,1\n10,0,2 # a corner\n10;20;4\n\n0 20 3\n"
     wanted = HeightMap((0.0, 10.0), (0.0, 20.0), ((1.0, 2.0), (3.0, 4.0)))
-    assert read_height_map(path) == wanted
+    for written in (text, text.removeprefix("x,y,z\n"), text.replace("\n", "\r\n")):
+        for encoding in ("utf-8", "utf-8-sig"):  # as of a spreadsheet
+            path.write_text(written, encoding=encoding, newline="")
+            assert read_height_map(path) == wanted
     points = ((5, 5, -9), (15, 5, -8), (15.001, 25, -6), (5, 25, -7))
     path.write_text(
         "ok\n"
@@ -149,3 +152,13 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
         assert main([*asked, *wrong]) == 2
     assert main(["heightmap", str(part)]) == 2
     assert main(["heightmap", "--probe", "0,0,0,10"]) == 2
+    capsys.readouterr()
+    for words, told in {
+        ("--probe", "0,0,9,9", "--map", str(log)): "--map is for a program, not for --probe",
+        (str(part), "--map", str(log), "--step", "5"): "--step is for --probe",
+        ("--probe", "0,0,100000,100000", "--step", "1"): "more than 1,000,000 points",
+        ("--probe", "0,0,9,200000"): "--probe takes 4 numbers of up to 100,000 mm",
+    }.items():
+        assert main(["heightmap", *words]) == 2
+        said = capsys.readouterr()
+        assert told in said.err and said.err.count("\n") == 1 and not said.out

@@ -11,7 +11,7 @@ import pytest
 from passo import cli, shape
 from passo.formula import formula
 from passo.native import ffi, planner
-from passo.shape import ShapeError, check, read_table, sample, write_table
+from passo.shape import ShapeError, check, read_table, sample, table_text, write_table
 
 
 def test_formulas() -> None:
@@ -158,3 +158,15 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
         assert cli.main(["shape", *arguments]) == 2
     assert cli.main(["shape", "--formula", "u", "--out", str(tmp_path / "no" / "t.csv")]) == 2
     assert capsys.readouterr().err.count("\n") == 3
+    for empty in ("", " "):
+        assert cli.main(["shape", "--formula", empty]) == 2
+        assert capsys.readouterr().err == "the formula is empty\n"
+
+
+@pytest.mark.parametrize("ends", ["\n", "\r\n"])
+def test_a_file_of_a_spreadsheet(tmp_path: Path, ends: str) -> None:
+    """It begins with a byte order mark."""
+    for text in ("u,s\n0,0\n1,1\n", table_text(sample(lambda u: u))):
+        for encoding in ("utf-8", "utf-8-sig"):
+            (tmp_path / "t.csv").write_text(text, encoding=encoding, newline=ends)
+            assert read_table(tmp_path / "t.csv") == sample(lambda u: u)

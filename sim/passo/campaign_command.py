@@ -19,6 +19,8 @@ from passo.toolchain import paths
 
 SHOWN = 10  # failures reported immediately
 NAME = "campaign.json"
+NUMBER_MAX = 1_000_000_000_000  # of moves
+JOBS_MAX = 1000
 
 
 @dataclass(frozen=True)
@@ -67,14 +69,17 @@ def run_campaign(campaign: Campaign, where: Where) -> bool:
 
 
 def _check(campaign: Campaign, where: Where) -> None:
-    if campaign.moves < 1:
-        raise BadInputError(f"--moves must be at least 1, not {campaign.moves}")
-    if campaign.first < 0:
-        raise BadInputError(f"--first must be at least 0, not {campaign.first}")
+    for option, value, least, most in (
+        ("--moves", campaign.moves, 1, NUMBER_MAX),
+        ("--first", campaign.first, 0, NUMBER_MAX),
+        ("--jobs", 1 if where.jobs is None else where.jobs, 1, JOBS_MAX),
+    ):
+        if value < least:
+            raise BadInputError(f"{option} must be at least {least}, not {value}")
+        if value > most:
+            raise BadInputError(f"{option} must be at most {most}")
     if campaign.engine not in ENGINES:
         raise BadInputError(f"--engine must be one of {', '.join(ENGINES)}, not {campaign.engine}")
-    if where.jobs is not None and where.jobs < 1:
-        raise BadInputError(f"--jobs must be at least 1, not {where.jobs}")
     if where.jobs is not None and where.scheduler is not None:
         raise BadInputError("--jobs and --scheduler are mutually exclusive: a cluster has its own workers")
     if not find_spec("distributed"):

@@ -13,6 +13,7 @@ from passo.failure import BadInputError, Failure
 from passo.output import BROKEN_PIPE, FULL, drop_output, release_folders
 
 PART_SUFFIXES = (".nc", ".ngc", ".gcode", ".tap")
+LINES_MAX = 1_000_000  # of the long file of `passo firmware --grbl`
 OK, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
 
@@ -217,7 +218,9 @@ def _shape(options: argparse.Namespace) -> int:
     from passo import shape
     from passo.formula import formula
 
-    points = shape.sample(formula(options.formula)) if options.formula else shape.read_table(options.csv)
+    points = (
+        shape.read_table(options.csv) if options.formula is None else shape.sample(formula(options.formula))
+    )
     facts = shape.check(points)
     if options.out:
         shape.write_table(points, options.out)
@@ -269,8 +272,8 @@ def _firmware(options: argparse.Namespace) -> int:
     need_repository("the firmware")
     if (options.grbl and not options.table) or (options.lines is not None and not options.grbl):
         raise BadInputError("--grbl needs --table, and --lines needs --grbl")
-    if options.lines is not None and options.lines < 1:
-        raise BadInputError(f"--lines must be at least 1, not {options.lines}")
+    if options.lines is not None and not 1 <= options.lines <= LINES_MAX:
+        raise BadInputError(f"--lines must be 1 to {LINES_MAX}, not {options.lines}")
     try:
         if options.grbl:
             from passo_stm32 import grbl_bench

@@ -5,8 +5,15 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from passo.option_values import number
+
 TOOLS = "for G41, G42 and G43: tool table of LinuxCNC, in mm"
 INPUTS_MOST = 9  # the probe, and the home inputs of eight motors
+PROBING = (  # options of --probe: the range of their values, which those of the settings of grbl limit
+    ("--step", (0.1, 100_000), "MM", "grid (default 10)"),
+    ("--depth", (0, 100_000), "MM", "below 0 (default 2)"),
+    ("--feed", (0.001, 1_000_000), "MM/MIN", "feed (default 50)"),
+)
 INPUTS = "of M66: those that are high, such as 0,2; the others are low"
 
 
@@ -39,9 +46,8 @@ def add(
         "--map", type=Path, metavar="MAP.csv", help="x,y,z in mm, or a log with [PRB:...]"
     )
     height_map.add_argument("--origin", metavar="X,Y,Z", help="with a log: work zero in machine coordinates")
-    height_map.add_argument("--step", type=float, default=10, metavar="MM", help="probe: grid (default 10)")
-    height_map.add_argument("--depth", type=float, default=2, metavar="MM", help="probe: below 0 (default 2)")
-    height_map.add_argument("--feed", type=float, default=50, metavar="MM/MIN", help="probe (default 50)")
+    for name, (least, most), unit, text in PROBING:
+        height_map.add_argument(name, type=number(least, most), metavar=unit, help=f"probe: {text}")
     for parser in (expand, height_map):
         parser.add_argument("-o", "--out", type=Path, metavar="FILE", help="write to a file")
         parser.add_argument("--machine", type=Path, metavar="MACHINE.toml", help="its axes (default: six)")

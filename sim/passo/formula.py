@@ -27,6 +27,8 @@ def formula(text: str) -> Callable[[float], float]:
     """
     if len(text) > FORMULA_MAX:
         raise ShapeError(f"a formula must have at most {FORMULA_MAX} characters")
+    if not text.strip():
+        raise ShapeError("the formula is empty")
     try:
         tree = ast.parse(text.replace("^", "**").strip(), mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):

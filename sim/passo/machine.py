@@ -13,7 +13,10 @@ from passo.engine import EVENT, AroundEngine, bits_of
 
 GRAINS_PER_S = 100_000  # how often the switches are checked
 RESTING_GRAINS = 10  # as many together while no pin changes
-SWITCH = re.compile(r"(limit_low|limit_high|home|alarm|probe):(\d+):(?:\.\.(-?\d+)|(-?\d+)\.\.)")
+SWITCH = re.compile(
+    r"(limit_low|limit_high|home|alarm|probe):(\d{1,2}):(?:\.\.(-?\d{1,10})|(-?\d{1,10})\.\.)"
+)
+STEPS = range(-(1 << 31), 1 << 31)  # what a counter of positions holds
 
 
 @dataclass
@@ -51,8 +54,10 @@ class Switch:
 def read_switch(text: str) -> Switch:
     """A switch as users write it: home:0:..-500 is active up to -500, limit_high:1:9000.. from 9000 on."""
     match = SWITCH.fullmatch(text)
-    if not match:
-        raise ValueError(f"{text}: a switch is PIN:AXIS:..POSITION or PIN:AXIS:POSITION..")
+    if not match or int(match[3] or match[4]) not in STEPS:
+        raise ValueError(
+            f"{text}: a switch is PIN:AXIS:..POSITION or PIN:AXIS:POSITION.., in steps of 32 bits"
+        )
     pin, axis, below, above = match.groups()
     return Switch(pin, int(axis), int(below or above), above=below is None)
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from passo import expand_options
 from passo.failure import BadInputError
+from passo.option_values import whole
 
 if TYPE_CHECKING:
     from passo.part import Lines
@@ -40,7 +41,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--to", dest="last", type=int, metavar="LINE", help="and up to this one")
     parser.add_argument(
         "--look-ahead",
-        type=_look_ahead,
+        type=whole(LOOK_AHEAD_MIN, LOOK_AHEAD_MAX),
         default=LOOK_AHEAD,
         metavar="N",
         help=f"lines of the planner (default {LOOK_AHEAD})",
@@ -72,10 +73,3 @@ def refuse(options: argparse.Namespace, suffixes: Sequence[str]) -> None:
     }
     if named := [name for name, value in given.items() if value]:
         raise BadInputError(f"{named[0]} is for G-code: {', '.join(suffixes)}")
-
-
-def _look_ahead(text: str) -> int:
-    number = int(text)
-    if not LOOK_AHEAD_MIN <= number <= LOOK_AHEAD_MAX:
-        raise argparse.ArgumentTypeError(f"must be {LOOK_AHEAD_MIN} to {LOOK_AHEAD_MAX:,}, not {number}")
-    return number

@@ -50,7 +50,8 @@ def _engine(options: argparse.Namespace) -> Any:
         if options.axes is not None or options.clock is not None:
             raise BadInputError("--machine has its own axes and clock: leave --axes and --clock out")
         return served(options.engine, read_machine(options.machine))
-    axes, clock_hz = options.axes or AXES, options.clock or CLOCK_HZ
+    axes = AXES if options.axes is None else options.axes
+    clock_hz = CLOCK_HZ if options.clock is None else options.clock
     if not 1 <= axes <= AXES_MAX or not 1 <= clock_hz <= WHOLE_MAX:
         raise BadInputError(f"--axes must be 1 to {AXES_MAX}, --clock 1 to {WHOLE_MAX}")
     return open_engine(options.engine, Parameters(axes=axes, clock_hz=clock_hz), clock_hz)

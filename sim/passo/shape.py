@@ -120,7 +120,7 @@ def read_table(path: Path) -> Points:
     Raises ShapeError.
     """
     try:
-        with path.open(newline="", encoding="utf-8") as file:
+        with path.open(newline="", encoding="utf-8-sig") as file:
             text = file.read()
     except OSError as error:
         raise ShapeError(f"{path}: {error.strerror}") from None

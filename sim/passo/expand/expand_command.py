@@ -2,7 +2,6 @@
 """`passo expand` and `passo heightmap`: from a program to plain lines."""
 
 import argparse
-import math
 import sys
 from collections.abc import Sequence
 from dataclasses import replace
@@ -17,6 +16,9 @@ from passo.failure import BadInputError
 from passo.machine_file import read_machine
 from passo.output import write_text
 
+PROBING = ("step", "depth", "feed")
+PLACE_MAX = 100_000  # mm: of a rectangle
+
 
 def run_expand(asked: argparse.Namespace) -> None:
     """Write the plain lines of a file, to standard output if no other is asked for. Raises BadInputError."""
@@ -26,17 +28,25 @@ def run_expand(asked: argparse.Namespace) -> None:
 def run_height_map(asked: argparse.Namespace) -> None:
     """Write the lines of a file that follow a map, or those that probe it. Raises BadInputError."""
     if asked.probe:
+        _refuse(asked, ("map", "origin", "tools"), "is for a program, not for --probe")
         x0, y0, x1, y1 = _numbers(asked.probe, 4, "--probe")
-        lines = probing_program(Grid((x0, x1), (y0, y1), asked.step, depth=asked.depth, feed=asked.feed))
+        chosen = {name: value for name in PROBING if (value := getattr(asked, name)) is not None}
+        lines = probing_program(Grid((x0, x1), (y0, y1), **chosen))
         points = sum("G38.2" in line for line in lines)
         _write("".join(f"{line}\n" for line in lines), asked.out, f"{points} points")
         return
+    _refuse(asked, PROBING, "is for --probe")
     if not asked.map:
         raise BadInputError("--map is missing: a file with x,y,z")
     options = _options(asked)
     origin = _numbers(asked.origin, 3, "--origin") if asked.origin else (0.0, 0.0, 0.0)
     height_map = read_height_map(asked.map, origin)
     _write_lines(follow(_expanded(asked.part, options), height_map, options), asked)
+
+
+def _refuse(asked: argparse.Namespace, names: Sequence[str], why: str) -> None:
+    if given := [name for name in names if getattr(asked, name) is not None]:
+        raise BadInputError(f"--{given[0]} {why}")
 
 
 def _options(asked: argparse.Namespace) -> Options:
@@ -69,6 +79,8 @@ def _numbers(text: str, count: int, option: str) -> list[float]:
         values = [float(value) for value in text.split(",")]
     except ValueError:
         values = []
-    if len(values) != count or not all(map(math.isfinite, values)):
-        raise BadInputError(f"{option} takes {count} numbers with commas between them, not '{text}'")
+    if len(values) != count or not all(abs(value) <= PLACE_MAX for value in values):  # false of nan
+        raise BadInputError(
+            f"{option} takes {count} numbers of up to {PLACE_MAX:,} mm with commas between them, not '{text}'"
+        )
     return values

@@ -19,6 +19,7 @@ from passo.failure import BadInputError
 
 ERROR = 0.001  # mm: by which a line may deviate from the map
 SAME = 0.01  # mm: coordinates of a grid line
+POINTS_MAX = 1_000_000  # that are probed
 EDGE = 1e-6  # mm outside the map that are rounding
 NUMBER = r"\s*([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*"
 POINT = re.compile(rf"{NUMBER}[,;\s]{NUMBER}[,;\s]{NUMBER}")
@@ -124,7 +125,7 @@ def _cell(lines: Sequence[float], at: float) -> tuple[int, float]:
 def read_height_map(path: Path, origin: Sequence[float] = (0.0, 0.0, 0.0)) -> HeightMap:
     """A map from a file; for a log `origin` is the work zero in machine coordinates. Raises BadInputError."""
     try:
-        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+        lines = path.read_text(encoding="utf-8-sig", errors="replace").splitlines()
     except OSError as error:
         raise BadInputError(f"{path}: {error.strerror}") from None
     points = list(_points(path, lines, origin))
@@ -179,7 +180,7 @@ class Grid:
 
     x: tuple[float, float]
     y: tuple[float, float]
-    step: float
+    step: float = 10.0
     clearance: float = 2.0  # over the work zero, between points
     depth: float = 2.0  # below it, where probing ends
     feed: float = 50.0
@@ -187,7 +188,10 @@ class Grid:
 
 def probing_program(grid: Grid) -> list[str]:
     """Plain lines that probe a grid, to and fro; what the sender logs of them is a map."""
-    xs, ys = (_spread(low, high, grid.step) for low, high in (grid.x, grid.y))
+    columns, rows = (_pieces(low, high, grid.step) for low, high in (grid.x, grid.y))
+    if (columns + 1) * (rows + 1) > POINTS_MAX:
+        raise BadInputError(f"a grid in steps of {grid.step:g} mm has more than {POINTS_MAX:,} points")
+    xs, ys = _spread(grid.x, columns), _spread(grid.y, rows)
     made = ["G21 G90 G94", f"G0 Z{shown(grid.clearance)}"]
     for row, y in enumerate(ys):
         for x in xs if row % 2 == 0 else reversed(xs):
@@ -199,9 +203,13 @@ def probing_program(grid: Grid) -> list[str]:
     return [*made, "M2"]
 
 
-def _spread(low: float, high: float, step: float) -> list[float]:
-    """From one end to the other, evenly, at most a step apart."""
-    if not high > low or not step > 0:
+def _pieces(low: float, high: float, step: float) -> int:
+    """How many, of at most a step, are from one end to the other."""
+    if not high - low > SAME or not step > 0:
         raise BadInputError(f"the grid from {low:g} to {high:g} in steps of {step:g} mm has no points")
-    count = math.ceil((high - low) / step - EDGE)
-    return [low + (high - low) * k / count for k in range(count + 1)]
+    return max(1, math.ceil((high - low) / step - EDGE))
+
+
+def _spread(ends: tuple[float, float], pieces: int) -> list[float]:
+    low, high = ends
+    return [low + (high - low) * k / pieces for k in range(pieces + 1)]
