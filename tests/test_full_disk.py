@@ -25,7 +25,7 @@ from passo.failure import BadInputError, BuildError, Failure
 from passo.native import ffi
 from passo.toolchain import paths
 
-from tests.helpers.commands import MOVES, PART, WRITERS, smaller
+from tests.helpers.commands import MACHINE, MOVES, PART, WRITERS, smaller
 
 NO_LIMIT = 1 << 40
 LIMITS = (0, 100, 3000, 30_000, 300_000)  # bytes that a file may have
@@ -272,6 +272,59 @@ def test_a_place_that_cannot_be_written_is_bad_input(
         assert main(command) == 2
         said = capsys.readouterr().err
         assert out in said and said.count("\n") == 1
+
+
+# Commands with an output, and what of the work comes first. BAD: a place that cannot be written.
+EARLY = {
+    "run": (["run", "moves.toml", "--out", "BAD"], "passo.run_command.read_channels"),
+    "part": (["run", "part.nc", *MACHINE, "--out", "BAD"], "passo.part_command.read_part"),
+    "preview": (["preview", "part.nc", *MACHINE, "--out", "BAD"], "passo.preview_command.read_part"),
+    "make": (["make", MACHINE[1], "--out", "BAD"], "passo.make_command.read_machine"),
+    "expand": (["expand", "part.nc", "--out", "BAD/"], "passo.expand.expand_command.expand_file"),
+    "heightmap": (
+        ["heightmap", "--probe", "0,0,9,9", "--out", "BAD/"],
+        "passo.expand.expand_command.probing_program",
+    ),
+    "shape": (["shape", "--formula", "u", "--out", "BAD/"], "passo.shape.sample"),
+    "plot": (["shape", "--formula", "u", "--plot", "BAD/"], "passo.shape.sample"),
+    "serve": (["serve", "socket", "--edges", "BAD/"], "passo.serve_command._engine"),
+    "json": (
+        ["campaign", "--moves", "1", "--seed", "1", "--json", "BAD/"],
+        "passo.campaign_command.prepare",
+    ),
+    "campaign": (
+        ["campaign", "--moves", "1", "--seed", "1", "--out", "BAD"],
+        "passo.campaign_command.prepare",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", EARLY)
+def test_a_place_that_cannot_be_written_is_refused_before_the_work(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A folder where a file is wanted, a file where a folder is, or no folder; one without permission."""
+    monkeypatch.chdir(tmp_path)
+    words, work = EARLY[name]
+    monkeypatch.setattr(work, lambda *_, **__: pytest.fail("begun"))
+    (tmp_path / "file").touch()
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "circle").symlink_to("circle")
+    access = os.access
+    monkeypatch.setattr(os, "access", lambda path, mode: path.name != "locked" and access(path, mode))
+    (tmp_path / "locked").mkdir()
+    wants_file = words[-1] == "BAD/"
+    places = {"file/x": "Not a directory", "locked/x": "Permission denied", "n" * 999: "File name too long"}
+    places |= {"folder": "Is a directory"} if wants_file else {"file": "Not a directory"}
+    if wants_file and name != "json":  # which makes it
+        places["none/x"] = "No such file or directory"
+    before = sorted(tmp_path.rglob("*"))
+    for place, reason in places.items():
+        assert main([*words[:-1], place]) == 2
+        said = capsys.readouterr()
+        assert said.err == f"{words[-2]} {place}: {reason}\n" and not said.out
+    assert main([*words[:-1], "circle"]) == 2
+    assert sorted(tmp_path.rglob("*")) == before
 
 
 def test_a_device_stays_one(capsys: pytest.CaptureFixture[str]) -> None:

@@ -2,7 +2,6 @@
 """The command `passo campaign`: checks of the options, progress, and results."""
 
 import argparse
-import os
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -13,7 +12,7 @@ from passo.campaign_moves import Case
 from passo.campaign_play import ENGINES
 from passo.console import Estimate, console, stages, table
 from passo.failure import BadInputError
-from passo.output import make_folder, write_json
+from passo.output import check_file, check_folder, make_folder, write_json
 from passo.pulse_judge import Fault
 from passo.toolchain import paths
 
@@ -46,8 +45,8 @@ def run_campaign(campaign: Campaign, where: Where) -> bool:
     """
     _check(campaign, where)
     summary = where.json or paths.results / NAME
-    _check_folder(where.out, "--out")
-    _check_folder(summary.parent, "--json")
+    check_folder(where.out, "--out")
+    check_file(summary, "--json", makes=True)
     if local := where.scheduler is None:
         prepare(campaign.engine)  # once, and not in all processes at the same time
     cluster = local_cluster(jobs_of(where.jobs)) if local else running_cluster(where.scheduler)
@@ -84,13 +83,6 @@ def _check(campaign: Campaign, where: Where) -> None:
         raise BadInputError("--jobs and --scheduler are mutually exclusive: a cluster has its own workers")
     if not find_spec("distributed"):
         raise BadInputError("a campaign needs the Python package distributed: pip install 'passo[campaign]'")
-
-
-def _check_folder(folder: Path, option: str) -> None:
-    """Raises BadInputError if a folder cannot be made or written to."""
-    there = next(path for path in (folder.absolute(), *folder.absolute().parents) if path.exists())
-    if not there.is_dir() or not os.access(there, os.W_OK):
-        raise BadInputError(f"{option} {folder}: {there} is not a writable folder")
 
 
 class _Progress:

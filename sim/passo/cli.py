@@ -217,7 +217,11 @@ def _height_map(options: argparse.Namespace) -> int:
 def _shape(options: argparse.Namespace) -> int:
     from passo import shape
     from passo.formula import formula
+    from passo.output import check_file
 
+    for option in ("out", "plot"):
+        if path := getattr(options, option):
+            check_file(path, f"--{option}")
     points = (
         shape.read_table(options.csv) if options.formula is None else shape.sample(formula(options.formula))
     )

@@ -11,7 +11,7 @@ from passo.drives import drives
 from passo.failure import BadInputError
 from passo.gcode import AXIS_LETTERS
 from passo.make_command import CHIP_AXES, LARGE, SMALL
-from passo.output import write_text
+from passo.output import check_file, write_text
 from passo.values import meant
 
 TOOLS = {
@@ -50,6 +50,7 @@ def ask_machine(path: Path, ask: Callable[[str], str] = input) -> None:
     """Ask for board, drive, switches, tool and number of motors; write the file. Raises BadInputError."""
     if path.exists():
         raise BadInputError(f"{path}: exists already; passo make {path} builds it")
+    check_file(path, "passo make:")
     try:
         chosen = board(_choice(ask, "board", tuple(boards())))
         drive = _choice(ask, "drive", tuple(drives()))

@@ -26,7 +26,7 @@ from passo.linuxcnc_files import linuxcnc_files
 from passo.machine_file import CHIPS, MOTOR_KEYS, MachineFile, read_machine
 from passo.machine_sheet import BLUE_PILL, Host, Sheet, Wire, draw, page
 from passo.native import ffi, planner
-from passo.output import empty_folder, write_text
+from passo.output import check_folder, empty_folder, write_text
 from passo.path import Motors
 from passo.pins import INPUTS
 from passo.toolchain import need_repository, paths
@@ -66,6 +66,7 @@ def make_machine(path: Path, out: Path | None = None, build: bool = True) -> boo
     Returns whether there is a bitstream that meets its clocks. Raises BadInputError, or Failure for a tool.
     """
     need_repository("passo make")
+    check_folder(out or paths.results, "--out")
     machine = read_machine(path, takes_up=True)
     if machine.host == "linuxcnc":
         return _make_linuxcnc(machine, out or _folder(path), build)

@@ -25,6 +25,49 @@ def refusal(path: Path, error: OSError) -> Failure | BadInputError:
     return Failure(text) if error.errno in FULL else BadInputError(text)
 
 
+def check_file(path: Path, option: str, makes: bool = False) -> None:
+    """Refuse a file that cannot be written, before the work for it begins. Raises BadInputError.
+
+    `makes`: its folder is made if it is missing.
+    """
+    with _refused(path, option):
+        if path.is_dir():
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+        if path.exists() and not path.is_file():
+            _check_access(path)
+        else:
+            _check_folder(path.resolve().parent, makes)
+
+
+def check_folder(folder: Path, option: str) -> None:
+    """The same of a folder for results."""
+    with _refused(folder, option):
+        _check_folder(folder.resolve(), makes=True)
+
+
+@contextmanager
+def _refused(path: Path, option: str) -> Iterator[None]:
+    try:
+        yield
+    except (OSError, RuntimeError) as error:  # the latter of links in a circle
+        reason = getattr(error, "strerror", None) or "cannot be written"
+        raise BadInputError(f"{option} {path}: {reason}") from None
+
+
+def _check_folder(place: Path, makes: bool) -> None:
+    while makes and not place.exists():
+        place = place.parent
+    place.stat()  # says if it is not there
+    if not place.is_dir():
+        raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR))
+    _check_access(place)
+
+
+def _check_access(place: Path) -> None:
+    if not os.access(place, os.W_OK):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+
+
 @contextmanager
 def complete(path: Path) -> Iterator[Path]:
     """Yield a path beside `path`, of the same suffix, that takes its place when the block has ended.

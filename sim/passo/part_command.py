@@ -19,7 +19,7 @@ from passo.failure import BadInputError
 from passo.gcode import NANOMETERS
 from passo.grbl_setup import attach_encoders
 from passo.machine_file import MachineFile, read_machine
-from passo.output import empty_folder, write_json
+from passo.output import check_folder, empty_folder, write_json
 from passo.part import Lines, Part, Played, core_of, plan_part, play_part, read_part
 from passo.part_judge import beside, greatest, shares_of
 from passo.path import LOOK_AHEAD
@@ -53,6 +53,7 @@ def run_part(files: Sequence[Path], asked: Asked) -> bool:
 
     Ctrl-C ends it: KeyboardInterrupt, once the results up to then are written.
     """
+    check_folder(asked.out or paths.results, "--out")
     machine = machine_of(files, asked.machine, asked.inputs)
     window = wanted_window(asked.waves, asked.engine)
     part = read_part(files, machine, read_tools(asked.tools), asked.only, surface_of(asked.surface))

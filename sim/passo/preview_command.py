@@ -11,7 +11,7 @@ from typing import Any
 from passo.console import progress
 from passo.course import Course
 from passo.expand.tools import read_tools
-from passo.output import empty_folder, write_json, write_text
+from passo.output import check_folder, empty_folder, write_json, write_text
 from passo.part import Lines, Part, plan_part, read_part
 from passo.part_command import machine_of, say_unread, surface_of
 from passo.path import LOOK_AHEAD
@@ -39,6 +39,7 @@ def run_preview(
 
     Ctrl-C ends it: KeyboardInterrupt, once the results up to then are written.
     """
+    check_folder(out or paths.results, "--out")
     machine = machine_of(files, machine_path, inputs)
     part = read_part(files, machine, read_tools(tools), only, surface_of(surface))
     with progress(part.path.name, len(part.lines)) as report:

@@ -11,7 +11,7 @@ from passo.engine import DifferenceError
 from passo.failure import BadInputError
 from passo.move_file import read_channels
 from passo.moves import Channels
-from passo.output import empty_folder, write_json
+from passo.output import check_folder, empty_folder, write_json
 from passo.plan import Plan, plan_channels
 from passo.report import problems, summarize_channels, total_clocks, write_pulses
 from passo.run import Run, execute_channels, open_engine, parameters_of
@@ -39,6 +39,7 @@ def run_file(moves: Path, engine: str, out: Path | None, wanted: Wanted) -> bool
 
     Ctrl-C ends it: KeyboardInterrupt, once the results up to then are written.
     """
+    check_folder(out or paths.results, "--out")
     window = wanted_window(wanted.waves, engine)
     file = read_channels(moves)
     if file.setup:

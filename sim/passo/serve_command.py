@@ -16,7 +16,7 @@ from passo.grbl_setup import served
 from passo.machine_file import read_machine
 from passo.move_forms import WHOLE_MAX
 from passo.moves import AXES_MAX
-from passo.output import write_bytes
+from passo.output import check_file, write_bytes
 from passo.run import open_engine
 from passo.serve import Server
 from passo.serve_options import AXES, CLOCK_HZ
@@ -24,6 +24,8 @@ from passo.serve_options import AXES, CLOCK_HZ
 
 def run_serve(options: argparse.Namespace) -> None:
     """Serve until interrupted or terminated, or until the first host is gone."""
+    if options.edges:
+        check_file(options.edges, "--edges")
     ended = False
 
     def end(*_: object) -> None:

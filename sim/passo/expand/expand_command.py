@@ -14,7 +14,7 @@ from passo.expand.output import PlainLine
 from passo.expand.tools import read_tools
 from passo.failure import BadInputError
 from passo.machine_file import read_machine
-from passo.output import write_text
+from passo.output import check_file, write_text
 
 PROBING = ("step", "depth", "feed")
 PLACE_MAX = 100_000  # mm: of a rectangle
@@ -22,11 +22,13 @@ PLACE_MAX = 100_000  # mm: of a rectangle
 
 def run_expand(asked: argparse.Namespace) -> None:
     """Write the plain lines of a file, to standard output if no other is asked for. Raises BadInputError."""
+    _check_out(asked)
     _write_lines(_expanded(asked.part, _options(asked)), asked)
 
 
 def run_height_map(asked: argparse.Namespace) -> None:
     """Write the lines of a file that follow a map, or those that probe it. Raises BadInputError."""
+    _check_out(asked)
     if asked.probe:
         _refuse(asked, ("map", "origin", "tools"), "is for a program, not for --probe")
         x0, y0, x1, y1 = _numbers(asked.probe, 4, "--probe")
@@ -42,6 +44,11 @@ def run_height_map(asked: argparse.Namespace) -> None:
     origin = _numbers(asked.origin, 3, "--origin") if asked.origin else (0.0, 0.0, 0.0)
     height_map = read_height_map(asked.map, origin)
     _write_lines(follow(_expanded(asked.part, options), height_map, options), asked)
+
+
+def _check_out(asked: argparse.Namespace) -> None:
+    if asked.out:
+        check_file(asked.out, "--out")
 
 
 def _refuse(asked: argparse.Namespace, names: Sequence[str], why: str) -> None:
