@@ -144,8 +144,14 @@ def test_an_event_that_does_not_come_is_a_problem(tmp_path: Path) -> None:
 
 
 def test_a_hold_without_end(tmp_path: Path) -> None:
-    with pytest.raises(RunError, match="move 1 does not end: RUN"):
-        play(tmp_path, MOVE + event('do = "hold"\ntime = 0.1'))
+    """What is said names the event, also where the resume comes before it, or never."""
+    hold, resume = event('do = "hold"\ntime = 0.1'), event('do = "resume"\ntime = 0.05')
+    never = event('do = "resume"\nposition = 2001')
+    for events, number in ((hold, 1), (resume + hold, 2), (hold + never, 1)):
+        with pytest.raises(RunError) as caught:
+            play(tmp_path, MOVE + events)
+        told = f"move 1 does not end: held by event {number}, and no resume follows"
+        assert str(caught.value).endswith(told)
 
 
 # --------------------------------------------------------------------------------------------- switches ----

@@ -64,6 +64,7 @@ class Scene:
         self.troubles: list[str] = []
         self.answers: dict[int, int] = {}
         self.armed: int | None = None  # event
+        self.held = ""  # the name of an event
         self.source: Source | None = None
         self.raster: Raster | None = None
         self.is_stopped = False
@@ -150,16 +151,19 @@ class Scene:
             self._advance(min(self.poll_clocks, self._patience()))
             self._look()
             if self.engine.clock - self.active_at > GIVE_UP_SECONDS * self.clock_hz:
-                state = self.driver.snapshot()
-                raise RunError(
-                    f"{self.file.path}: move {section.numbers[0]} does not end: {State(state.state).name}"
-                )
+                number, why = section.numbers[0], self._why_it_does_not_end()
+                raise RunError(f"{self.file.path}: move {number} does not end: {why}")
         if section.outcome == "OK" and self.is_stopped:
             section.outcome = "STOPPED"
         if section.outcome == "OK" and section.kind in ("home", "probe"):
             for track in list(self.following.values()):  # at its edges it has stopped the trackers, too
                 self._track(track)
         section.end = self.engine.clock
+
+    def _why_it_does_not_end(self) -> str:
+        if self.held:
+            return f"held by {self.held}, and no resume follows"
+        return State(self.driver.snapshot().state).name
 
     def _poll(self) -> None:
         """Poll the driver, which clears a stop that home or probe expects."""
@@ -241,6 +245,8 @@ class Scene:
             self.driver.call("untrack", event.axis)
         elif name in COMMANDS:
             self.driver.call(name)
+            if name in ("hold", "resume"):
+                self.held = self.setup.names[number] if name == "hold" else ""
 
     # ------------------------------------------------------------------------------------- readings ----
 
