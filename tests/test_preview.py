@@ -11,11 +11,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from passo import cli
+from passo import cli, preview_command
 from passo.course import Course
 from passo.machine_file import MachineFile, read_machine
 from passo.part import Lines, Part, plan_part, play_part, read_part
 from passo.part_judge import path_of
+from passo.preview import Planned
 from passo.run import open_engine, parameters_for
 from passo.toolchain import paths
 
@@ -221,5 +222,51 @@ def test_a_preview_that_is_canceled(tmp_path: Path) -> None:
         raise KeyboardInterrupt
 
     planned = plan_part(part, machine, progress=cancel)
-    assert not planned.ended and 1900 < planned.taken < 2100
+    assert planned.canceled and not planned.ended and 1900 < planned.taken < 2100
     assert 1000 < len(planned.lines) < planned.taken and Course(planned, part.begin.place).seconds > 10
+
+
+def test_nothing_moves(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """It is planned to its end, and the command says so."""
+    path = tmp_path / "part.nc"
+    for text in ("G21\nG90\nM2\n", "G4 P1\n", "G1 X0 F100\nX0\n"):
+        path.write_text(text)
+        assert run(path, "--out", tmp_path) == 0
+        assert capsys.readouterr().err == f"{path}: nothing moved\n"
+        assert json.loads((tmp_path / "preview.json").read_text())["problems"] == []
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "machine"),
+    [
+        ("G0 X1\nG4 P4000\nX2\n", 3, MACHINE),
+        ("M66 P0 L3 Q5000\nG0 X1\n", 1, paths.examples / "machines" / "router.toml"),
+    ],
+)
+def test_what_takes_more_than_an_hour(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str, line: int, machine: Path
+) -> None:
+    """It is a problem, whether or not all lines are taken, and not an interruption."""
+    path = tmp_path / "part.nc"
+    path.write_text(text)
+    assert cli.main(["preview", str(path), "--machine", str(machine), "--out", str(tmp_path)]) == 1
+    (problem,) = json.loads((tmp_path / "preview.json").read_text())["problems"]
+    told = "timeout: an hour of simulated time has passed since the last line taken, "
+    assert problem == f"{told}{path}:{line}"
+    assert capsys.readouterr().err == f"{path}: {problem}\n"
+
+
+def test_ctrl_c_at_the_command(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The results so far, and exit status 130."""
+
+    def cancel(part: Part, machine: MachineFile, look_ahead: int, _: object) -> Planned:
+        return replace(plan_part(part, machine, look_ahead), canceled=True, ended=False)
+
+    monkeypatch.setattr(preview_command, "plan_part", cancel)
+    path = tmp_path / "part.nc"
+    path.write_text("G0 X1\nX2\n")
+    assert run(path, "--out", tmp_path) == 130
+    assert capsys.readouterr().err == f"{path}: canceled at {path}:2\n"
+    assert (tmp_path / "preview.html").exists()

@@ -95,6 +95,7 @@ class Planned:
     taken: int  # lines of the program
     ended: bool  # whether all of it is planned
     dry: bool  # whether the core was short of ramps
+    canceled: bool = False  # by Ctrl-C
 
 
 def plan_lines(
@@ -130,12 +131,13 @@ def plan_lines(
             raise DriverError("preview", error[0])
         raise MemoryError
     try:
+        canceled = False
         c.passo_preview_begin(made, gcode, ffi().new("int32_t[8]", list(steps)))
         try:
             while c.passo_preview_play(made, CHUNK):
                 progress(c.passo_preview_taken(made))
         except KeyboardInterrupt:
-            pass
+            canceled = True
         refused = _copied(c.passo_preview_refusals, made, REFUSAL)
         return Planned(
             machine,
@@ -147,6 +149,7 @@ def plan_lines(
             c.passo_preview_taken(made),
             c.passo_preview_is_done(made),
             c.passo_preview_ran_dry(made),
+            canceled,
         )
     finally:
         c.passo_preview_destroy(made)

@@ -56,11 +56,13 @@ def run_preview(
     for problem in facts["problems"]:
         print(f"{part.path}: {problem}", file=sys.stderr)
     say_unread(part)
+    if not course.motions and planned.ended:
+        print(f"{part.path}: nothing moved", file=sys.stderr)
     print(f"{part.path.name}: {len(part.lines)} lines, {part.chords} chords in {course.seconds:.6g} s")
     for line in _said(facts):
         print(line)
     print(f"results: {', '.join(str(out / name) for name in (SUMMARY, PICTURE, PAGE))}")
-    if not planned.ended and planned.taken < len(part.lines):
+    if planned.canceled:
         raise KeyboardInterrupt
     return not facts["problems"]
 
@@ -102,7 +104,9 @@ def _problems(part: Part, course: Course) -> list[str]:
     if planned.dry:
         found.append("the core would run out of ramps")
     if not planned.ended:
-        found.append(f"only {planned.taken} of {len(part.lines)} lines are planned")
+        last = part.places[max(planned.taken, 1) - 1]
+        hour = "timeout: an hour of simulated time has passed since the last line taken, "
+        found.append(f"canceled at {last}" if planned.canceled else f"{hour}{last}")
     return found
 
 
