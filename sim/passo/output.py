@@ -57,7 +57,7 @@ def _refused(path: Path, option: str) -> Iterator[None]:
 def _check_folder(place: Path, makes: bool) -> None:
     while makes and not place.exists():
         place = place.parent
-    place.stat()  # says if it is not there
+    place.stat()  # says if it is missing
     if not place.is_dir():
         raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR))
     _check_access(place)
