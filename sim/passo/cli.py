@@ -222,6 +222,8 @@ def _shape(options: argparse.Namespace) -> int:
     for option in ("out", "plot"):
         if path := getattr(options, option):
             check_file(path, f"--{option}")
+    if options.plot:
+        shape.check_picture(options.plot)
     points = (
         shape.read_table(options.csv) if options.formula is None else shape.sample(formula(options.formula))
     )
@@ -276,6 +278,8 @@ def _firmware(options: argparse.Namespace) -> int:
     need_repository("the firmware")
     if (options.grbl and not options.table) or (options.lines is not None and not options.grbl):
         raise BadInputError("--grbl needs --table, and --lines needs --grbl")
+    if options.table and options.moves:
+        raise BadInputError(f"{options.moves[0]}: --table takes no move files")
     if options.lines is not None and not 1 <= options.lines <= LINES_MAX:
         raise BadInputError(f"--lines must be 1 to {LINES_MAX}, not {options.lines}")
     try:

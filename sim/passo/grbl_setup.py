@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Machine description of the grbl console, and the file with its settings."""
 
+import errno
 import math
 import os
 from collections.abc import Callable, Iterator
@@ -292,8 +293,10 @@ class SettingsFile:
         try:
             if not path.exists():
                 write_bytes(path, b"\xff" * PAGE * PAGES)
-            if path.stat().st_size != PAGE * PAGES:
+            if not path.is_file() or path.stat().st_size != PAGE * PAGES:
                 raise BadInputError(f"{path}: not a settings file: it must have {PAGE * PAGES} bytes")
+            if not os.access(path, os.R_OK | os.W_OK):
+                raise BadInputError(f"{path}: {os.strerror(errno.EACCES)}")
         except OSError as error:
             raise BadInputError(f"{path}: {error.strerror}") from None
         kinds = (

@@ -257,7 +257,9 @@ def read_machine(path: Path, takes_up: bool = False) -> MachineFile:
         raise BadInputError(f"{path}: not a UTF-8 text file") from None
     except tomllib.TOMLDecodeError as error:
         raise BadInputError(f"{path}: {toml_error(text, error)}") from None
-    except (ValueError, RecursionError, ArithmeticError) as error:
+    except RecursionError:
+        raise BadInputError(f"{path}: nested too deeply") from None
+    except (ValueError, ArithmeticError) as error:
         raise BadInputError(f"{path}: {str(error).splitlines()[0]}") from None
     try:
         return _machine(path, data, takes_up)

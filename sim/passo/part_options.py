@@ -67,8 +67,8 @@ def refuse(options: argparse.Namespace, suffixes: Sequence[str]) -> None:
         "--tools": options.tools,
         "--inputs": options.inputs is not None,
         "--surface": options.surface,
-        "--from": options.first,
-        "--to": options.last,
+        "--from": options.first is not None,
+        "--to": options.last is not None,
         "--look-ahead": options.look_ahead != LOOK_AHEAD,
     }
     if named := [name for name, value in given.items() if value]:

@@ -191,6 +191,14 @@ def table_text(points: Sequence[int]) -> str:
     return "k,point\n" + "".join(f"{k},{point}\n" for k, point in enumerate(points))
 
 
+def check_picture(path: Path) -> None:
+    """Raises BadInputError if there are no pictures of that name."""
+    from matplotlib.backend_bases import FigureCanvasBase
+
+    if path.suffix[1:].lower() not in FigureCanvasBase.filetypes:
+        raise BadInputError(f"--plot {path}: the name must end in .png, .svg or .pdf")
+
+
 def plot_table(points: Sequence[int], path: Path) -> None:
     """Plot a shape and its slope."""
     import matplotlib

@@ -61,9 +61,9 @@ def demo(files: list[Path] | None = None, engine: str = "rtl") -> bool:
     planner on the PC."""
     tell = stages()
     files = files or [paths.examples / f"{name}.toml" for name in EXAMPLES]
+    clocks = [planned_clocks(path, CLOCK_HZ) for path in files]
     open_engine(engine, parameters_for(1), CLOCK_HZ).close()  # builds what all of them need
     firmware_elf()
-    clocks = [planned_clocks(path, CLOCK_HZ) for path in files]
     for path, length in zip(files, clocks, strict=True):
         tell(f"{path.stem}: {length / CLOCK_HZ:.3f} s of motion, {length:,} clocks")
     results: list[Shown] = []

@@ -38,7 +38,12 @@ class Played:
 def with_clock(path: Path, clock_hz: int, folder: Path) -> Path:
     """Copy a move file with another clock, and the tables in its folder; return its path."""
     copy = folder / path.name
-    lines = path.read_text(encoding="utf-8").splitlines()
+    try:
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
+    except OSError as error:
+        raise MoveFileError(f"{path}: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise MoveFileError(f"{path}: not a UTF-8 text file") from None
     lines = [f"clock_hz = {clock_hz}" if line.startswith("clock_hz") else line for line in lines]
     copy.write_text("\n".join(lines) + "\n", encoding="utf-8")
     for table in path.parent.glob("*.csv"):
@@ -49,7 +54,11 @@ def with_clock(path: Path, clock_hz: int, folder: Path) -> Path:
 def channels_of(path: Path, clock_hz: int) -> Channels:
     """Read a move file, for a core with this clock."""
     with tempfile.TemporaryDirectory() as folder:
-        channels = read_channels(with_clock(path, clock_hz, Path(folder)))
+        try:
+            channels = read_channels(with_clock(path, clock_hz, Path(folder)))
+        except MoveFileError as error:
+            told = str(error).replace(str(Path(folder) / path.name), str(path))
+            raise MoveFileError(told.replace(folder, str(path.parent))) from None
     if channels.setup:
         raise MoveFileError(f"{path}: a [machine] is not simulated here: use passo run")
     return channels

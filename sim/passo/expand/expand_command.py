@@ -9,7 +9,7 @@ from pathlib import Path
 
 from passo.expand.expander import Options, expand_file
 from passo.expand.follow import follow
-from passo.expand.height_map import Grid, probing_program, read_height_map
+from passo.expand.height_map import PLACE_MAX, Grid, probing_program, read_height_map
 from passo.expand.output import PlainLine
 from passo.expand.tools import read_tools
 from passo.failure import BadInputError
@@ -17,7 +17,6 @@ from passo.machine_file import read_machine
 from passo.output import check_file, write_text
 
 PROBING = ("step", "depth", "feed")
-PLACE_MAX = 100_000  # mm: of a rectangle
 
 
 def run_expand(asked: argparse.Namespace) -> None:
@@ -29,7 +28,7 @@ def run_expand(asked: argparse.Namespace) -> None:
 def run_height_map(asked: argparse.Namespace) -> None:
     """Write the lines of a file that follow a map, or those that probe it. Raises BadInputError."""
     _check_out(asked)
-    if asked.probe:
+    if asked.probe is not None:
         _refuse(asked, ("map", "origin", "tools"), "is for a program, not for --probe")
         x0, y0, x1, y1 = _numbers(asked.probe, 4, "--probe")
         chosen = {name: value for name in PROBING if (value := getattr(asked, name)) is not None}
@@ -41,7 +40,7 @@ def run_height_map(asked: argparse.Namespace) -> None:
     if not asked.map:
         raise BadInputError("--map is missing: a file with x,y,z")
     options = _options(asked)
-    origin = _numbers(asked.origin, 3, "--origin") if asked.origin else (0.0, 0.0, 0.0)
+    origin = _numbers(asked.origin, 3, "--origin") if asked.origin is not None else (0.0, 0.0, 0.0)
     height_map = read_height_map(asked.map, origin)
     _write_lines(follow(_expanded(asked.part, options), height_map, options), asked)
 

@@ -19,6 +19,7 @@ from passo.failure import BadInputError
 
 ERROR = 0.001  # mm: by which a line may deviate from the map
 SAME = 0.01  # mm: coordinates of a grid line
+PLACE_MAX = 100_000  # mm
 POINTS_MAX = 1_000_000  # that are probed
 EDGE = 1e-6  # mm outside the map that are rounding
 NUMBER = r"\s*([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*"
@@ -155,11 +156,19 @@ def _points(
             if found := PROBED.search(line):
                 if found[4] == "0":
                     raise BadInputError(f"{path}:{number}: the probe did not touch")
-                yield float(found[1]) - origin[0], float(found[2]) - origin[1], float(found[3]) - origin[2]
+                place = _place(path, number, found)
+                yield place[0] - origin[0], place[1] - origin[1], place[2] - origin[2]
         elif found := POINT.fullmatch(text):
-            yield float(found[1]), float(found[2]), float(found[3])
+            yield _place(path, number, found)
         elif text and not (number == 1 and text[:1].isalpha()):
             raise BadInputError(f"{path}:{number}: no point: {text}; x,y,z is wanted")
+
+
+def _place(path: Path, number: int, found: re.Match[str]) -> tuple[float, float, float]:
+    x, y, z = (float(found[axis]) for axis in (1, 2, 3))
+    if not max(abs(x), abs(y), abs(z)) <= PLACE_MAX:
+        raise BadInputError(f"{path}:{number}: x,y,z must be within {PLACE_MAX:,} mm")
+    return x, y, z
 
 
 def _lines(values: list[float]) -> tuple[float, ...]:

@@ -34,6 +34,8 @@ def read_tools(path: Path | None) -> dict[int, Tool]:
         except LineError as error:
             raise ExpandError(place, error) from None
         if "T" in words:
+            if words["T"] < 0 or words["T"] % 1:
+                raise ExpandError(place, LineError(f"T{words['T']:g}: a tool needs a whole number"))
             tool = Tool(round(words["T"]), words.get("D", 0.0), words.get("Z", 0.0))
             tools[tool.number] = tool
         elif words:
