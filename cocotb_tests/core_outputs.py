@@ -327,6 +327,38 @@ def bad_settings_are_refused(core: Core) -> None:
 
 
 @core_test
+def a_motion_has_the_outputs_of_its_own_lines(core: Core) -> None:
+    """With a lag longer than the lines, and the next motion queued: nothing of the last one comes in it."""
+    random = rng("core outputs, own lines")
+    lag = 2000
+    channel = begin(core, output_lag=lag)
+    before = 0
+    for number in range(8):
+        words = [output(random.randrange(256), random.choice((0, FULL))) for _ in range(6)]
+        since = core.clock
+        for first in range(0, 6, 3):  # two motions of 3 lines
+            channel.lines(*[Line(40, (40, 0, 0), last=i == 2) for i in range(3)], outputs=words[first:][:3])
+            channel.ramps(Ramp(ONE // 2, 0), Ramp(ONE // 2, 2 + 20 * (number % 2)), Ramp(0, 0, last=True))
+        channel.start()
+        core.run_until(lambda began=since: len(core.motions(0, began)) == 2, 30_000)
+        channel.rest()
+        core.run(lag + 300)
+        assert channel.state().quiet
+        steps = core.steps(0, since)
+        for first, (begins, ends) in zip((0, 3), core.motions(0, since), strict=True):
+            own = [step + lag for step in steps if begins <= step <= ends][::40]
+            at = [begins, *(clock for clock in own if clock < ends)]
+            levels = [before, *(word.levels for word in words[first:][:3])]
+            powers = [0, *(int(word.power > 0) for word in words[first:][:3])]
+            for begin_of, end_of, level, power in zip(at, [*at[1:], ends], levels, powers, strict=False):
+                clocks = [begin_of, end_of - 1]
+                shown = [levels_at(core, "outputs", bit, since, clocks) for bit in range(8)]
+                assert shown == [[level >> bit & 1] * 2 for bit in range(8)]
+                assert high_clocks(core, "power", begin_of, end_of) == power * (end_of - begin_of)
+            before = words[first + 2].levels
+
+
+@core_test
 def levels_are_set_at_rest(core: Core) -> None:
     """Immediately; a line then changes them; a reset clears them."""
     channel = begin(core)

@@ -53,7 +53,8 @@ void passo_motion_wires(const struct passo_channel *channel, const struct passo_
 	wires->tracking = channel->trackers.busy;
 	wires->startable = state == PASSO_STATE_IDLE && inputs->run && channel->line_queue.next_valid
 	                && wires->ramp_valid && !wires->hold && !wires->requests.wait
-	                && !(motion->stopping && wires->tracking);
+	                && !(motion->stopping && wires->tracking)
+	                && passo_outputs_quiet(&channel->outputs);
 	wires->prepare = state == PASSO_STATE_IDLE && motion->startable;
 	passo_encoders_wires(channel, wires);
 	wires->begins_next = state == PASSO_STATE_ARMED && (inputs->sync_edge || !inputs->wait_sync)
