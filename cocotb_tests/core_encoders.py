@@ -193,6 +193,39 @@ def a_thread_has_its_pitch_and_its_phase_in_every_pass(core: Core) -> None:
 
 
 @core_test
+def a_thread_waits_for_sync_and_then_for_the_index(core: Core) -> None:
+    """However far they are apart; an index before sync starts nothing, and sync alone neither."""
+    channel = core.channel()
+    core.watch(PinTiming())
+    shafts = Shafts(core, PER_TURN)
+    shafts.turn(SPINDLE, ((40, 1) for _ in range(100_000)))
+    channel.link.write(channel.base + r.CHANNEL_FOLLOW, follow_word(SPINDLE, wait_index=True), 1 << 30)
+    turn = 40 * PER_TURN
+    for phase in range(5):
+        core.sync(False)
+        channel.rest()
+        thread(channel, ONE // 3, 2, core.tick)
+        core.link.write(r.ADDRESS_RUN, 1 | 1 << r.RUN_WAIT_SYNC_LSB)
+        core.run(2 * turn + phase * turn // 5)
+        assert channel.state().state == State.ARMED
+        edge = core.clock
+        core.sync(True)
+        core.run(50)
+        core.sync(False)  # the edge counts, not the level
+        core.started = edge
+        core.wait_end()
+        at_index = [clock for clock, at in shafts.counts[SPINDLE] if at % PER_TURN == 0 and clock > edge]
+        assert 0 < core.began() - at_index[0] <= 2 * LATENCY, phase
+    # an edge before the motion is prepared is none of its own
+    channel.rest()
+    core.sync(True)
+    thread(channel, ONE // 3, 2, core.tick)
+    core.link.write(r.ADDRESS_RUN, 1 | 1 << r.RUN_WAIT_SYNC_LSB)
+    core.run(3 * turn)
+    assert channel.state().state == State.ARMED
+
+
+@core_test
 def a_spindle_that_turns_back_repeats_nothing(core: Core) -> None:
     """The path waits until the spindle is where it was, then continues with the same counts."""
     channel = core.channel()

@@ -4,8 +4,9 @@
 //   IDLE -> PREPARE -> ARMED -> RUN -> SETTLE -> (DRAIN -> SETTLE) -> IDLE;  anything -> STOPPED -> IDLE
 //
 // Promise: a motion is prepared when `run` is set and a line and a ramp are queued, but not while `hold`. From ARMED
-// it starts when it `may_begin`, immediately or, while wait_sync is set, on a sync edge; so ARMED channels start
-// together when one write clears their wait_sync. It ends when its profile has ended and its line has ended (or is
+// it starts when it `may_begin`, immediately or, while wait_sync is set, on a sync edge, or later if it may not begin
+// then; so ARMED channels start together when one write clears their wait_sync. An edge while the inputs are not
+// `known` is ignored. It ends when its profile has ended and its line has ended (or is
 // ENDLESS); missing substeps of the line are drained and counted. A stop is soft (the rate goes to 0 first) for
 // COMMAND.STOP, RAMP_UNDERRUN and soft requests of inputs and encoders, else the channel is STOPPED two clocks later.
 // Encoders only stop a motion. On the same clock e-stop has priority, then ABORT, STEP_OVERRUN, hard requests of
@@ -38,6 +39,7 @@ module passo_motion (
   input  wire [ 3:0] input_soft_cause,
   // encoders
   input  wire        may_begin,         // an ARMED motion need not wait for an index
+  input  wire        known,             // nor for its inputs
   input  wire        following_soft,    // an axis is too far from its encoder: requests to stop
   input  wire        following_hard,
   // trackers
@@ -85,6 +87,7 @@ module passo_motion (
   reg       finished;  // settled, and no substep is missing
   reg [3:0] soft_cause;
   reg       startable;  // high for one clock, still in IDLE
+  reg       synced;  // there was a sync edge while it was ARMED
   reg       rate_was_zero;
   reg [1:0] aborted;  // one and two clocks ago
 
@@ -163,7 +166,8 @@ module passo_motion (
   end
 
   always @(posedge clk) begin
-    begin_profile <= armed && (sync_edge || !wait_sync) && may_begin && !begin_profile && !stop_now;
+    synced        <= armed && known && (sync_edge || synced);
+    begin_profile <= armed && known && (sync_edge || synced || !wait_sync) && may_begin && !begin_profile && !stop_now;
     startable     <= idle && run && line_valid && ramp_valid && !startable && !stop_due && !hold;
     stop_due      <= stop_wanted && !stopped;
     cause_due     <= cause_wanted;
@@ -195,6 +199,7 @@ module passo_motion (
       stopping      <= 1'b0;
       drained       <= 15'd0;
       startable     <= 1'b0;
+      synced        <= 1'b0;
       begin_profile <= 1'b0;
       stop_due      <= 1'b0;
       settled       <= 1'b0;

@@ -108,7 +108,8 @@ static bool motion_settled(const struct passo_channel *channel, const struct pas
 	const bool waits = passo_inputs_requests(channel, inputs).wait;
 
 	if (motion->stopping || motion->stop_due || motion->settling != 0u || motion->aborted != 0u
-	    || motion->rate_was_zero != (channel->timescale.rate == 0u))
+	    || motion->rate_was_zero != (channel->timescale.rate == 0u)
+	    || (motion->synced && (waits || motion->state != PASSO_STATE_ARMED)))
 		return false;
 	switch (motion->state) {
 	case PASSO_STATE_IDLE:
@@ -118,8 +119,9 @@ static bool motion_settled(const struct passo_channel *channel, const struct pas
 	case PASSO_STATE_PREPARE:
 		return !motion->running && !channel->ramp.ready;
 	case PASSO_STATE_ARMED:
-		return !motion->running && (inputs->wait_sync || waits || passo_encoders_await_index(channel))
-		    && !motion->begin_profile;
+		return !motion->running && !motion->begin_profile
+		    && (waits || passo_encoders_await_index(channel)
+			|| (inputs->wait_sync && !motion->synced));
 	case PASSO_STATE_STOPPED:
 		return !motion->running;
 	case PASSO_STATE_RUN:

@@ -288,6 +288,7 @@ struct passo_motion {
 	uint8_t settling; /* 3 bits */
 	bool settled;
 	bool startable;
+	bool synced; /* sync rose while it was ARMED */
 	bool begin_profile;
 	bool stop_due;
 	enum passo_cause cause_due;
@@ -447,7 +448,7 @@ struct passo_channel_wires {
 	bool tracking; /* an axis moves without a motion, or beside it */
 	bool ramp_valid;
 	bool hold, now_coming; /* from the admission */
-	bool startable, prepare, begins_next, begin_profile;
+	bool startable, prepare, synced_next, begins_next, begin_profile;
 	bool may_begin, follows;
 	bool too_far, lags; /* from the encoders: a hard stop, a soft stop */
 	bool stall;

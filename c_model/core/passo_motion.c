@@ -57,8 +57,10 @@ void passo_motion_wires(const struct passo_channel *channel, const struct passo_
 	                && passo_outputs_quiet(&channel->outputs);
 	wires->prepare = state == PASSO_STATE_IDLE && motion->startable;
 	passo_encoders_wires(channel, wires);
-	wires->begins_next = state == PASSO_STATE_ARMED && (inputs->sync_edge || !inputs->wait_sync)
-	                  && wires->may_begin && !wires->requests.wait;
+	wires->synced_next = state == PASSO_STATE_ARMED && !wires->requests.wait
+	                  && (inputs->sync_edge || motion->synced);
+	wires->begins_next = state == PASSO_STATE_ARMED && !wires->requests.wait
+	                  && (wires->synced_next || !inputs->wait_sync) && wires->may_begin;
 	wires->begin_profile = motion->begin_profile;
 	wires->finished = motion->settled && (line_over || channel->line.endless);
 	wires->stop_now = motion->stop_due && !wires->stopped;
@@ -80,6 +82,7 @@ void passo_motion_clock(
 	const struct passo_channel_registers *registers = &channel->registers;
 
 	motion->startable = wires->startable && !motion->stop_due;
+	motion->synced = wires->synced_next;
 	motion->begin_profile = wires->begins_next && !wires->begin_profile && !wires->stop_now;
 	motion->stop_due = stop_wanted(channel, wires) && !wires->stopped;
 	motion->cause_due = cause_of_stop(channel, wires);

@@ -55,8 +55,14 @@ always @(posedge clk)
     if (prepare) nothing_counts_before : assert (f_uncounted >= (f_stilled ? 3'd1 : 3'd5));
     if (release_line) settled_before_release : assert (f_uncounted >= 3'd4 && f_settle_age >= 3'd4);
     if (moving && f_unmoved != 3'd0) rests_before_it_moves : assert (f_unmoved >= 3'd3);
-    if (begin_profile) begins_only_armed : assert (state == STATE_ARMED && $past(state == STATE_ARMED && may_begin && (sync_edge || !wait_sync)));
+    if (begin_profile)
+      begins_only_armed :
+      assert (state == STATE_ARMED && $past(state == STATE_ARMED && may_begin && known && (f_synced || sync_edge || !wait_sync)));
   end
+
+// --- A sync edge while it was ARMED, since the inputs are known
+reg f_synced = 1'b0;
+always @(posedge clk) f_synced <= state == STATE_ARMED && known && (f_synced || sync_edge) && !rst;
 
 // --- From one clock to the next
 always @(posedge clk)
@@ -81,6 +87,9 @@ always @(posedge clk)
         default:
         drain_comes_from : assert ($past(state == STATE_SETTLE) && $past(!line_ended && !line_endless, 2));
       endcase
+    if ($past(state == STATE_ARMED && may_begin && known && (f_synced || sync_edge || !wait_sync) && !stop_due && !begin_profile))
+      begins_when_it_may :
+      assert (begin_profile);
     if ($past(begin_profile) && !$past(f_stop_hard, 2) && !$past(stopping, 2))
       begins_when_told : assert (state == STATE_RUN || state == STATE_SETTLE);
     if (drop) drops_only_after_abort : assert (f_abort || $past(f_abort) || $past(f_abort, 2));
@@ -132,6 +141,7 @@ wire [2:0] f_states = {2'd0, idle} + {2'd0, preparing} + {2'd0, armed} + {2'd0, 
 always @(posedge clk)
   if (f_begun) begin
     assert (f_states == 3'd1);
+    assert (synced == f_synced);
     assert (moving == (runs | settles | drains));
     assert (soft_cause == CAUSE_STOP || soft_cause == CAUSE_RAMP_UNDERRUN || soft_cause == CAUSE_FOLLOWING_ERROR || soft_cause == f_soft || !stopping);
     if (stopping) assert (soft_cause != CAUSE_NONE);
