@@ -393,6 +393,44 @@ def every_tracker_has_its_axis_and_its_bits(core: Core) -> None:
 
 
 @core_test
+def a_new_acceleration_is_the_one_that_moves(core: Core) -> None:
+    """Also if a motion that waited for its inputs begins right behind it, and with it a tracker."""
+    channel = core.channel()
+    core.watch(PinTiming())
+    channel.pins(PinTiming())
+    trackers = Trackers(channel)
+    random, limits = rng("a new acceleration"), (40 << 20, 12 << 20)
+    trackers.limit(0, 1 << 30, limits[0])
+    trackers.enable(1)
+    targets = (r.CHANNEL_TRACKER_TARGET_DOWN_BASE, r.CHANNEL_TRACKER_TARGET_BASE)
+    filter_clocks, way, place = 1200, 0, 0
+    margins: list[int] = []
+    for number in range(16):
+        up = number % 2
+        way += 24 if up else -24
+        place += 2
+        channel.link.write(channel.base + targets[up], place)
+        channel.rest()
+        line = Line(240, (24 if up else -24, *[0] * (core.axes - 1)), last=True)
+        channel.lines(line, outputs=[LineOutputWord(False, False, 0, 0)])
+        channel.ramps(Ramp(ONE // 16, 0), Ramp(ONE // 16, 31), Ramp(0, 0, last=True))
+        core.run(random.randrange(2 * trackers.tick))
+        core.link.write(r.ADDRESS_INPUT_FILTER, filter_clocks)  # unknown for twice as long
+        unknown = core.clock
+        channel.start()
+        # the motion begins when the write lets it, or up to 100 clocks later
+        core.run(max(0, unknown + 2 * filter_clocks - 700 - 12 * number - core.clock))
+        channel.link.write(channel.axis_base(0) + r.AXIS_TRACKER_ACCELERATION, limits[1 - up])
+        written = core.clock
+        core.wait_end()
+        margins.append(core.began() - written)
+        trackers.wait(20_000)  # it does not come back from far away
+        assert trackers.positions()[0] == place, margins
+        assert channel.positions()[0] == way + place
+    assert max(margins) > min(margins) + 64
+
+
+@core_test
 def a_tracker_too_fast_for_its_pins_is_an_overrun(core: Core) -> None:
     """On any axis: some steps wait, then one is lost; the channel is STOPPED, and the axis is named."""
     channel = core.channel()

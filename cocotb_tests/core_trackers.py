@@ -105,6 +105,30 @@ def lands_on_its_target(core: Core) -> None:
 
 
 @core_test
+def rests_below_its_acceleration(core: Core) -> None:
+    """With a speed that no multiple of the acceleration fits into, wherever it rests and is to go."""
+    trackers, random = begin(core), rng("rests_below_its_acceleration")
+    for _ in range(20):
+        speed = random.randrange(1 << 28, 1 << 30)
+        trackers.limit(0, speed, speed // random.randrange(1, 5))
+        at = trackers.positions()[0]
+        trackers.go(at + random.choice((20, -20)))
+        trackers.enable(1)
+        core.run(random.randrange(4000))
+        trackers.enable(0)
+        trackers.wait()
+        since, rest = core.clock, trackers.positions()[0]
+        acceleration = random.randrange(1 << 31, 1 << 32)
+        trackers.limit(0, random.choice((0, 1, acceleration - 1)), acceleration)
+        for target in (rest, rest + 1, rest - 1):
+            trackers.go(target)
+            trackers.enable(1)
+            core.run(6 * trackers.tick)
+            trackers.enable(0)
+        assert core.steps(0, since) == []
+
+
+@core_test
 def follows_targets_that_jump(core: Core) -> None:
     """Targets change at any time; at the end each axis is at its last one."""
     trackers, random = begin(core), rng("follows_targets_that_jump")

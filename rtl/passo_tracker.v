@@ -9,7 +9,7 @@
 //   each tick   v + a <= speed and t + v + a <= d   v += a, t += v        (with the new v)
 //               v <= speed     and t         <= d   v stays
 //               otherwise                           t -= v, v -= a        (with the old v)
-//               v is 0 then and 0 <= d < a          the position becomes the target: the last tick takes the rest
+//               v is 0 then and 0 <= d < a          the position becomes the target, from rest if a <= speed
 //               position += v * sign
 //   at rest with d < 0, sign changes; so there is a tick of rest before it turns.
 //
@@ -86,11 +86,12 @@ module passo_tracker #(
 
   wire speeds = ~(brakes | close) & slower;
   wire keeps = ~speeds & (rests | (~(brakes | near) & slow));
-  wire lands = stays_zero & ~(brakes | behind) & (rests ? close : near);
+  wire lands = stays_zero & ~(brakes | behind) & (rests ? close & slower : near);
 
-  // ---- clearing: v and t after a hard stop, all numbers after a reset or `zero`; for what is left of a tick and one ----
+  // ---- clearing: v and t after a hard stop, all numbers after a reset or `zero`, and v, which is 0, after a write of an
+  // acceleration: until an odd tick is over that began after it, in which every axis has copied its acceleration ----
   reg clearing;
-  reg clears_again;  // in the next tick
+  reg clears_again;  // beyond the next odd tick
   reg clears_position;
   reg cleared;  // in this turn, which then rests
   reg cleared_position;
@@ -124,6 +125,7 @@ module passo_tracker #(
   wire [ 2:0] number = bus_address[2:0];
   reg         in_targets;  // decoded one clock ahead of the strobe
   reg         in_axis;
+  wire        writes_acceleration = bus_write & in_axis & number[0];
   reg         writes_upper;
   reg         writes_lower;
   reg  [ 4:0] host_place;
@@ -294,11 +296,11 @@ module passo_tracker #(
     if (write_enable) enabled <= bus_bits;
     if (tick_ends) begin
       clearing        <= clears_again;
-      clears_again    <= 1'b0;
+      clears_again    <= clears_again & odd;
       clears_position <= clears_position & clears_again;
     end
-    if (halt || zero || rst) begin
-      enabled      <= {AXES{1'b0}};
+    if (halt || zero || rst) enabled <= {AXES{1'b0}};
+    if (halt || zero || rst || writes_acceleration) begin
       clearing     <= 1'b1;
       clears_again <= 1'b1;
     end

@@ -4,9 +4,8 @@
 // A write makes it `arming`; it is `armed` once the source has kept one `level` for more than `filter` clocks, and
 // again after `forget`. Promise: once armed, the first selected edge fires it, if the new level lasts for more than
 // `filter` clocks, and nothing else does. `latch` is a strobe, `filter` + 2 clocks after the first clock on which
-// `sources` has the new level: positions and `clocks`, the time since it was armed, are those of that clock. The
-// action comes with it. A write replaces an earlier trigger. Armed while the source is active, it waits for the next
-// selected edge.
+// `sources` has the new level, and the action comes with it. A write replaces an earlier trigger. Armed while the
+// source is active, it waits for the next selected edge.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none

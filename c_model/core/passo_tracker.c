@@ -76,6 +76,14 @@ static uint32_t *written_word(struct passo_trackers *trackers, unsigned axes, ui
 	}
 }
 
+static bool is_acceleration(unsigned axes, uint8_t address)
+{
+	const unsigned in_axes = (unsigned)address - PASSO_CHANNEL_AXIS_BASE;
+
+	return address >= PASSO_CHANNEL_AXIS_BASE && in_axes / PASSO_CHANNEL_AXIS_STRIDE < axes
+	    && in_axes % PASSO_CHANNEL_AXIS_STRIDE == PASSO_AXIS_TRACKER_ACCELERATION;
+}
+
 static struct passo_tracker_turn begin_turn(
     const struct passo_trackers *trackers, unsigned i, bool brake, bool hold)
 {
@@ -128,8 +136,8 @@ static void move(struct passo_trackers *trackers, struct passo_tracker_axis *axi
 
 	if (now->cleared)
 		velocity = 0;
-	const bool lands =
-	    velocity == 0u && !now->brakes && !now->behind && (now->rests ? now->close : now->near);
+	const bool lands = velocity == 0u && !now->brakes && !now->behind
+	                && (now->rests ? now->close && now->slower : now->near);
 	if (now->cleared)
 		axis->stopping = 0;
 	else if (speeds)
@@ -188,18 +196,21 @@ static void clock_turn(
 	}
 }
 
-static void clock_clearing(
-    struct passo_trackers *trackers, bool tick_ends, const struct passo_tracker_wires *wires)
+/* It lasts until an odd tick is over that began after it, in which every axis has copied its acceleration. */
+static void clock_clearing(struct passo_trackers *trackers, bool tick_ends, bool writes_acceleration,
+    const struct passo_tracker_wires *wires)
 {
+	const bool again = trackers->clears == 2u;
+
 	if (tick_ends && trackers->clears != 0u) {
-		trackers->clears--;
-		trackers->clears_position = trackers->clears_position && trackers->clears != 0u;
+		trackers->clears = !again ? 0u : trackers->odd ? 2u : 1u;
+		trackers->clears_position = trackers->clears_position && again;
 	}
-	if (wires->halt || wires->zero) {
+	if (wires->halt || wires->zero || writes_acceleration)
 		trackers->clears = 2;
+	if (wires->halt || wires->zero)
 		for (unsigned i = 0; i < PASSO_AXES_MAX; i++)
 			trackers->axis[i].enabled = false;
-	}
 	trackers->clears_position = trackers->clears_position || wires->zero;
 }
 
@@ -236,7 +247,8 @@ void passo_tracker_clock(struct passo_channel *channel, const struct passo_bus *
 	if (trackers->writes_enable)
 		for (unsigned i = 0; i < channel->axes; i++)
 			trackers->axis[i].enabled = (bus->data >> i & 1u) != 0u;
-	clock_clearing(trackers, tick_ends, wires);
+	clock_clearing(
+	    trackers, tick_ends, selected && bus->write && is_acceleration(channel->axes, address), wires);
 	trackers->hold = wires->hold;
 	trackers->writes_enable = selected && bus->write && address == PASSO_CHANNEL_TRACKER_ENABLE;
 	if (word != NULL)
