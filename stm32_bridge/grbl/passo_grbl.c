@@ -94,7 +94,7 @@ static enum passo_gcode_error execute(struct passo_grbl *grbl)
 	if (kind == PASSO_GRBL_KIND_JOG && grbl->dropped)
 		return PASSO_GCODE_OK;
 	if (kind != PASSO_GRBL_KIND_GCODE)
-		return passo_grbl_system(grbl, text);
+		return passo_grbl_system(grbl, kind, text);
 	const enum passo_gcode_error error = passo_gcode_execute(grbl->player->gcode, text);
 
 	if (error == PASSO_GCODE_OK)

@@ -172,6 +172,7 @@ static inline void passo_grbl_poll_touch(struct passo_grbl *grbl)
 #endif
 
 /* A line that begins with `$`. */
-enum passo_gcode_error passo_grbl_system(struct passo_grbl *grbl, const char *text);
+enum passo_gcode_error passo_grbl_system(
+    struct passo_grbl *grbl, enum passo_grbl_kind kind, const char *text);
 
 #endif

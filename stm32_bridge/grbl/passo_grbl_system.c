@@ -81,22 +81,26 @@ static enum passo_gcode_error at_rest(struct passo_grbl *grbl, const char *text)
 	return PASSO_GCODE_OK;
 }
 
-enum passo_gcode_error passo_grbl_system(struct passo_grbl *grbl, const char *text)
+enum passo_gcode_error passo_grbl_system(struct passo_grbl *grbl, enum passo_grbl_kind kind, const char *text)
 {
-	if (strncmp(text, "$J", 2) == 0)
+	switch (kind) {
+	case PASSO_GRBL_KIND_JOG:
 		return jog(grbl, text + 2);
-	if (strcmp(text, "$X") == 0)
+	case PASSO_GRBL_KIND_UNLOCK:
 		return unlock(grbl);
-	if (strcmp(text, "$C") == 0)
+	case PASSO_GRBL_KIND_CHECK:
 		return check(grbl);
-	if (strcmp(text, "$G") == 0)
-		passo_grbl_report_modes(grbl);
-	else if (strcmp(text, "$$") == 0)
+	case PASSO_GRBL_KIND_MODES:
+		if (text[1] == 'G')
+			passo_grbl_report_modes(grbl);
+		else
+			passo_grbl_say(grbl, "[HLP:$$ $# $G $I $N $x=val $Nx=line $J=line $SLP $C $X $H "
+			                     "$RST= ~ ! ? ctrl-x]\r\n");
+		return PASSO_GCODE_OK;
+	case PASSO_GRBL_KIND_SETTINGS:
 		passo_grbl_report_settings(grbl);
-	else if (strcmp(text, "$") == 0)
-		passo_grbl_say(grbl,
-		    "[HLP:$$ $# $G $I $N $x=val $Nx=line $J=line $SLP $C $X $H $RST= ~ ! ? ctrl-x]\r\n");
-	else
+		return PASSO_GCODE_OK;
+	default:
 		return at_rest(grbl, text + 1);
-	return PASSO_GCODE_OK;
+	}
 }
