@@ -79,6 +79,17 @@ def test_a_probe_is_told_before_it_is_answered(session: GrblConsole) -> None:
     assert session.status()["state"] == "Alarm"
 
 
+@pytest.mark.parametrize("line", ["G38.2 X-300 F6000", "G38.3 Y0.001 F600", "G38.4 Z-300 F6000"])
+def test_a_probe_within_soft_limits(session: GrblConsole, line: str) -> None:
+    """Alarm 2 before anything moves if its target is outside; it may go to the end of the travel."""
+    session.line("$20=1")
+    assert session.line(line) == "ALARM:2\nerror:9"
+    session.run(0.3)
+    assert session.fields("MPos") == [0, 0, 0]
+    session.line("$X")
+    assert session.line("G38.2 Z-200 F6000").endswith(":1]\nok")
+
+
 def test_speed_of_probe_and_home(session: GrblConsole) -> None:
     """Along the way, in mm/min."""
     session.send(b"G38.2 Z-60 X-30 F600\n", 0.4)

@@ -238,6 +238,16 @@ def test_a_probe_that_fails(session: GrblConsole) -> None:
     assert session.fields("MPos")[2] == -5
 
 
+def test_a_probe_within_the_travel(session: GrblConsole) -> None:
+    """With soft limits the distance ends there: no contact is an error, no alarm."""
+    for line in ("$20=1", "$342=100", "$132=20"):
+        assert session.line(line) == "ok"
+    assert session.line("$TPW").endswith("failed, try again]\nerror:47")
+    assert session.status()["state"] == "Idle" and session.fields("MPos")[2] == -20
+    session.line("$132=60")
+    assert session.line("$TPW").endswith("ok") and -50 < session.fields("MPos")[2] < -45
+
+
 def test_lengths_are_kept(machine: MachineFile, tmp_path: Path) -> None:
     """In the file of settings; a tool table of the command line is entered into it."""
     kept, given = "[T:5,0.000,0.000,30.000,0.000]", "[T:1,0.000,0.000,2.500,0.000]"

@@ -207,17 +207,12 @@ void passo_player_drop(struct passo_player *player)
 	player->waits = false;
 }
 
-static enum passo_error take_line(struct passo_player *player, enum passo_player_event *event)
+static enum passo_error take_line(struct passo_player *player)
 {
 	const struct passo_gcode_action *action = &player->action;
 	const uint32_t output = output_of(player, action->output);
 	struct passo_path_move move = {.feed = action->feed, .output = output};
 
-	if (!passo_player_allows(player, action->target)) {
-		*event = PASSO_PLAYER_TRAVEL;
-		passo_player_drop(player);
-		return PASSO_OK;
-	}
 	for (unsigned axis = 0; axis < player->gcode->settings.axes; axis++)
 		move.target[axis] = passo_gcode_millimetres(action->target[axis]);
 	passo_path_tolerance(player->feed->path, action->tolerance);
@@ -320,45 +315,39 @@ static enum passo_error take_at_rest(struct passo_player *player, enum passo_pla
 	return PASSO_OK;
 }
 
-static bool is_thread(enum passo_gcode_kind kind)
+static bool has_target(enum passo_gcode_kind kind)
 {
-#ifdef PASSO_WITHOUT_THREADS
-	(void)kind;
-	return false;
-#else
-	return kind == PASSO_GCODE_THREAD;
+#ifndef PASSO_WITHOUT_THREADS
+	if (kind == PASSO_GCODE_THREAD)
+		return true;
 #endif
+	return kind == PASSO_GCODE_LINE || kind == PASSO_GCODE_PROBE;
 }
 
-/* Of a line that is checked only: the same targets, and nothing moves. */
+/* Of a line that is checked only: nothing moves. */
 static void check_action(struct passo_player *player, enum passo_player_event *event)
 {
 	const enum passo_gcode_kind kind = player->action.kind;
 
-	if (kind == PASSO_GCODE_END) {
+	if (kind == PASSO_GCODE_END)
 		*event = PASSO_PLAYER_ENDED;
-	} else if (PASSO_GCODE_HAS_TOOLS && kind == PASSO_GCODE_CHANGE) {
+	else if (PASSO_GCODE_HAS_TOOLS && kind == PASSO_GCODE_CHANGE)
 		passo_gcode_load(player->gcode, player->action.tool);
-	} else if ((kind == PASSO_GCODE_LINE || kind == PASSO_GCODE_PROBE || is_thread(kind))
-	           && !passo_player_allows(player, player->action.target)) {
-		*event = PASSO_PLAYER_TRAVEL;
-		passo_player_drop(player);
-	}
 }
 
 #ifndef PASSO_WITHOUT_THREADS
 /* A thread as lines between two rests; a rigid one as two of them. */
-static enum passo_error rehearse(struct passo_player *player, enum passo_player_event *event)
+static enum passo_error rehearse(struct passo_player *player)
 {
 	passo_path_dwell(player->feed->path, 0);
 	player->action.stops = true;
-	const enum passo_error error = take_line(player, event);
+	const enum passo_error error = take_line(player);
 	if (error != PASSO_OK || player->waits || !player->action.rigid)
 		return error;
 	for (unsigned axis = 0; axis < PASSO_GCODE_AXES_MAX; axis++)
 		player->action.target[axis] = player->gcode->position[axis];
 	player->action.rigid = false;
-	player->waits = *event == PASSO_PLAYER_NOTHING;
+	player->waits = true;
 	return PASSO_OK;
 }
 #endif
@@ -368,13 +357,18 @@ static enum passo_error take_action(struct passo_player *player, enum passo_play
 	struct passo_path_planner *path = player->feed->path;
 
 	player->waits = false;
+	if (has_target(player->action.kind) && !passo_player_allows(player, player->action.target)) {
+		*event = PASSO_PLAYER_TRAVEL;
+		passo_player_drop(player);
+		return PASSO_OK;
+	}
 	if (player->checks) {
 		check_action(player, event);
 		return PASSO_OK;
 	}
 	switch (player->action.kind) {
 	case PASSO_GCODE_LINE:
-		return take_line(player, event);
+		return take_line(player);
 	case PASSO_GCODE_DWELL:
 		if (player->answers)
 			return take_at_rest(player, event);
@@ -384,12 +378,8 @@ static enum passo_error take_action(struct passo_player *player, enum passo_play
 	case PASSO_GCODE_THREAD:
 #ifndef PASSO_WITHOUT_THREADS
 		if (player->machine->rehearses)
-			return rehearse(player, event);
-		if (passo_player_allows(player, player->action.target))
-			return take_at_rest(player, event);
-		*event = PASSO_PLAYER_TRAVEL;
-		passo_player_drop(player);
-		break;
+			return rehearse(player);
+		return take_at_rest(player, event);
 #endif
 	case PASSO_GCODE_PROBE:
 	case PASSO_GCODE_PAUSE:
