@@ -271,6 +271,20 @@ def test_check_mode(session: GrblConsole) -> None:
     assert levels(session) == 0 and "[T:" not in session.line("$#")
 
 
+@pytest.mark.parametrize("word", ["T5 M6", "M61 Q5"])
+@pytest.mark.parametrize("ending", ["$C", "G0 X-1000"])
+def test_check_mode_leaves_the_tool(session: GrblConsole, word: str, ending: str) -> None:
+    """The program that was checked, or failed, changes its tools then; the tool before it is still there."""
+    for line in ("$20=1", "M61 Q2", "$C", word):
+        assert session.line(line).endswith("ok")
+    session.line(ending)
+    session.run(0.3)
+    session.line("$X")
+    session.take()
+    assert " T2 " in session.line("$G") and session.line("T2 M6") == "ok"
+    assert CHANGE in session.send(b"T5 M6\n", 0.1) and session.status()["state"] == "Tool"
+
+
 def test_an_input(machine: MachineFile) -> None:
     """M66 waits at rest, at most its time, and says what it has found; `!` stops the time."""
     with open_engine("model", core_for(machine), machine.clock_hz) as engine:

@@ -113,6 +113,7 @@ struct passo_grbl {
 	bool driven;           /* drives are enabled */
 	uint32_t moved_at;     /* time of the last motion */
 #ifndef PASSO_PLAIN_GCODE
+	uint8_t loaded;                  /* the tool before check mode */
 	uint8_t touch;                   /* step of `$TPW`; 0: none */
 	bool measured;                   /* there is a reference of tool lengths */
 	volatile bool admits;            /* other lines than those of the program are taken */

@@ -54,11 +54,15 @@ void passo_grbl_begin_stop(struct passo_grbl *grbl)
 	grbl->stopping = true;
 }
 
-/* Check mode leaves no trace: offsets are those stored, modes those of a reset, as outputs follow them. */
+/* Check mode leaves no trace: offsets are those stored, the tool is the one before, and modes are those of a
+ * reset, as outputs follow them. */
 static void leave_check(struct passo_grbl *grbl)
 {
 	if (grbl->checks) {
 		passo_gcode_set_offsets(grbl->player->gcode, &grbl->stored.offsets);
+#ifndef PASSO_PLAIN_GCODE
+		passo_gcode_load(grbl->player->gcode, grbl->loaded);
+#endif
 		passo_gcode_reset(grbl->player->gcode);
 	}
 	grbl->checks = grbl->player->checks = false;

@@ -20,6 +20,10 @@ static enum passo_gcode_error check(struct passo_grbl *grbl)
 	passo_grbl_say(grbl, grbl->checks ? "[MSG:Disabled]\r\n" : "[MSG:Enabled]\r\n");
 	if (grbl->checks)
 		passo_grbl_ask_reset(grbl);
+#ifndef PASSO_PLAIN_GCODE
+	else
+		grbl->loaded = grbl->player->gcode->loaded;
+#endif
 	grbl->checks = grbl->player->checks = true; /* until the reset */
 	return PASSO_GCODE_OK;
 }
@@ -95,7 +99,7 @@ enum passo_gcode_error passo_grbl_system(struct passo_grbl *grbl, enum passo_grb
 			passo_grbl_report_modes(grbl);
 		else
 			passo_grbl_say(grbl, "[HLP:$$ $# $G $I $N $x=val $Nx=line $J=line $SLP $C $X $H "
-			                     "$RST= ~ ! ? ctrl-x]\r\n");
+					     "$RST= ~ ! ? ctrl-x]\r\n");
 		return PASSO_GCODE_OK;
 	case PASSO_GRBL_KIND_SETTINGS:
 		passo_grbl_report_settings(grbl);
