@@ -237,3 +237,35 @@ def test_an_alarm_leaves_no_line_without_an_answer(session: GrblConsole) -> None
     session.finish()
     assert session.answers[answered:] == ["ok", "error:9", "error:9", "ok", "error:9", "ok", "ok"]
     assert x_of(session) == -4
+
+
+# ------------------------------------------------------------------------------------------- start lines
+
+
+def test_start_lines_run_when_the_place_is_known(session: GrblConsole) -> None:
+    """After a reset in Alarm `$X` runs none, as they may move; `$H` does, and a reset that was no alarm."""
+    session.line("$N0=G91 G0 X-10")
+    session.rest()
+    session.send(b"G0 X-50\n", 0.1)
+    assert session.send(b"\x18", 0.5).startswith("ALARM:3\n\nGrbl")
+    before = session.fields("MPos")
+    for _ in range(2):
+        session.line("$X")
+        session.run(0.3)
+        assert session.fields("MPos") == before and ">" not in session.send(b"G4 P0\n", 0.1)
+    assert session.line("$H") == "ok"
+    at = session.fields("MPos")[0]
+    session.run(0.3)
+    assert session.log.count(">G91G0X-10:ok") == 1 and session.fields("MPos")[0] == at - 10
+    session.send(b"\x18", 0.5)
+    assert session.log.count(">G91G0X-10:ok") == 2 and session.fields("MPos")[0] == at - 20
+
+
+def test_a_start_line_that_fails_is_the_last(session: GrblConsole) -> None:
+    """`$X` does not go on with the others."""
+    for line in ("$N0=G0 X-100", "G0 X0", "G4 P0", "$N1=G0 Y-10", "G0 Y0", "G4 P0", "$130=50", "$20=1"):
+        assert session.line(line) == "ok"
+    assert session.send(b"\x18", 0.5).endswith(">G0X-100:ok\nALARM:2")
+    assert session.line("$X").endswith("ok")
+    session.run(0.3)
+    assert ">G0Y" not in session.log and session.fields("MPos") == [0, 0, 0]

@@ -61,13 +61,14 @@ def test_outputs_of_the_user(session: GrblConsole) -> None:
     p0, p1 = 16, 32
     session.send(b"M3 S500\nG1 X-5 F6000\nM62 P0\nG1 X-10\nM63 P0\nG1 X-15\nM64 P1\nG1 X-20\n", 0.02)
     seen = []
-    while session.status()["state"] == "Run":
-        now = round(-session.fields("MPos")[0], 2), levels(session) & ~SPINDLE
-        seen += [now] if not seen or seen[-1][1] != now[1] else []
+    for _ in range(200):  # ms
+        now = levels(session) & ~SPINDLE, round(-session.fields("MPos")[0], 2)
+        seen += [now] if not seen or seen[-1][0] != now[0] else []
         session.run(0.001)
-    assert [level for _, level in seen] == [0, p0, 0, p1]
-    for (x, _), wanted in zip(seen[1:], (5, 10, 15), strict=True):
+    assert [level for level, _ in seen] == [0, p0, 0, p1]
+    for (_, x), wanted in zip(seen[1:], (5, 10, 15), strict=True):
         assert wanted <= x < wanted + 0.5
+    assert session.status()["state"] == "Idle" and session.fields("MPos")[0] == -20
     session.send(b"T5 M6\n", 0.1)
     assert levels(session) == p1
     session.send(b"~", 0.1)

@@ -147,7 +147,9 @@ static void take_line(struct passo_grbl *grbl)
 	if ((state != PASSO_GRBL_STATE_ALARM && !ready) || grbl->greets || grbl->owes
 	    || passo_grbl_line_rule(state, PASSO_GRBL_KIND_GCODE) == PASSO_GRBL_WAITS)
 		return;
-	if (state != PASSO_GRBL_STATE_ALARM && grbl->starts < PASSO_GRBL_STARTS) {
+	if (state == PASSO_GRBL_STATE_ALARM) {
+		grbl->starts = PASSO_GRBL_STARTS; /* none until `$H`: they may move */
+	} else if (grbl->starts < PASSO_GRBL_STARTS) {
 		take_start(grbl);
 		return;
 	}
