@@ -43,6 +43,7 @@ LINE, JOG, CHECK = b"X1 X2\n".hex(), b"$J=G91X1F9\n".hex(), b"$C\n".hex()
         (["p 1 7 0 0", f"< 90 {IDLE}"], "the steps are (7, 0, 0)"),
         (["< 1 <Idle|FS:5,0>"], "at rest"),
         (["> 1 929292", "< 9 <Idle|FS:0,0|Ov:80,100,100>"], "overrides are 80,100,100"),
+        (["> 1 92", "< 2 [MSG:Pgm End]", "< 9 <Idle|FS:0,0|Ov:90,100,100>"], "overrides are 90,100,100"),
         (["< 9 <Run|Ln:7|FS:0,0>"], "line 7 moves"),
         (["< 1 $11=0.01", f"> 2 {b'$11=-1'.hex()}0a", "< 3 error:4", "< 4 $11=-1"], "$11 is -1"),
     ],
@@ -60,6 +61,19 @@ def test_a_serial_line_has_no_batches() -> None:
     judge([f"< 1 {IDLE}", "> 2 217e", *after], serial=True)
     with pytest.raises(FindingError):
         judge([f"< 1 {IDLE}", "> 2 7e21", *after], serial=True)
+
+
+def test_an_override_on_the_line_at_the_end_of_the_program() -> None:
+    """It may come behind it, if it was sent just before; the first report tells, and the next ones agree."""
+    sent, end, report = "> 1 92", "< 3 [MSG:Pgm End]", "< 9 <Idle|FS:0,0|Ov:{},100,100>"
+    for percent in (90, 100):
+        judge([sent, end, report.format(percent), "> 1000 18"], serial=True)
+        for log in (
+            [sent, end, report.format(percent), report.format(190 - percent)],
+            [sent, end.replace("3", "999"), report.format(90)],
+        ):
+            with pytest.raises(FindingError):
+                judge([*log, "> 1000 18"], serial=True)
 
 
 @pytest.mark.parametrize("order", [("> 2 21", "< 3 ALARM:3"), ("< 2 ALARM:3", "> 3 21")])

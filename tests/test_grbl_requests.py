@@ -209,6 +209,18 @@ def test_an_override_in_mid_motion_slows_down_the_rest_of_it(session: GrblConsol
     assert x_of(session) == -100
 
 
+@pytest.mark.parametrize("end", ["M2", "M30"])
+def test_overrides_end_with_the_program(session: GrblConsole, end: str) -> None:
+    """Not before its last motion has ended; a line that waits behind the end is no part of it."""
+    session.send(b"\x92" * 5 + b"\x97\x9a" + f"G1 X-30 F6000\n{end}\nG1 X-60 F6000\n".encode(), 0.3)
+    assert session.fields("FS")[0] == pytest.approx(3000, abs=5)
+    assert session.grbl.wait(lambda: "Pgm End" in session.log, 1)
+    session.run(0.15)
+    assert session.fields("FS")[0] == pytest.approx(6000, abs=5)
+    told = next(report["Ov"] for report in (session.status() for _ in range(30)) if "Ov" in report)
+    assert told == "100,100,100"
+
+
 # ------------------------------------------------------------------------------------------ resets, sleep
 
 

@@ -22,13 +22,8 @@ void passo_grbl_greet(struct passo_grbl *grbl)
 void passo_grbl_open(struct passo_grbl *grbl, struct passo_player *player, const struct passo_grbl_sink *sink,
     const struct passo_grbl_setup *setup)
 {
-	*grbl = (struct passo_grbl){.player = player,
-	    .sink = *sink,
-	    .setup = setup,
-	    .feed = 100,
-	    .rapid = 100,
-	    .spindle = 100,
-	    .rate = 100};
+	*grbl = (struct passo_grbl){.player = player, .sink = *sink, .setup = setup, .rate = 100};
+	passo_grbl_end_overrides(grbl);
 	player->answers = true;
 	passo_gcode_line_clear(&grbl->line);
 	const enum passo_gcode_error loaded = passo_grbl_load(grbl);
@@ -192,6 +187,7 @@ static void heed(struct passo_grbl *grbl, enum passo_player_event event, enum pa
 		passo_grbl_report_probe(grbl);
 		break;
 	case PASSO_PLAYER_ENDED:
+		passo_grbl_end_overrides(grbl);
 		passo_grbl_say(grbl, "[MSG:Pgm End]\r\n");
 		break;
 	case PASSO_PLAYER_TOOL:

@@ -31,7 +31,9 @@ void passo_grbl_greet(struct passo_grbl *grbl);
 
 enum passo_grbl_state passo_grbl_state(const struct passo_grbl *grbl);
 
-/* A reset, after the requests are processed; overrides are 100 % from here on. */
+/* Overrides are 100 % from here on. */
+void passo_grbl_end_overrides(struct passo_grbl *grbl);
+/* A reset, after the requests are processed. Ends the overrides. */
 void passo_grbl_ask_reset(struct passo_grbl *grbl);
 /* Processes the real-time requests. */
 void passo_grbl_obey(struct passo_grbl *grbl);

@@ -15,9 +15,14 @@
 #define PERCENT_MAX 200
 #define PERCENT_FULL 100u
 
-void passo_grbl_ask_reset(struct passo_grbl *grbl)
+void passo_grbl_end_overrides(struct passo_grbl *grbl)
 {
 	grbl->feed = grbl->rapid = grbl->spindle = PERCENT_FULL;
+}
+
+void passo_grbl_ask_reset(struct passo_grbl *grbl)
+{
+	passo_grbl_end_overrides(grbl);
 	grbl->asked[PASSO_GRBL_ASK_RESET] = true;
 }
 

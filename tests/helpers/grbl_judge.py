@@ -36,6 +36,8 @@ class Judge:
     steps: tuple[int, ...] = (0, 0, 0)
     base: tuple[int, ...] = (0, 0, 0)  # position less steps, since the last home
     percent: list[int] = field(default_factory=lambda: [100, 100, 100])
+    overridden: int = -STOPS  # ms of the last override that was sent
+    unsure: bool = False  # whether it came before the end of the program or after
     settings: dict[str, str] = field(default_factory=dict)
     state: str = ""
     moved: int = 0  # ms of the last step
@@ -69,6 +71,7 @@ class Judge:
                 index, change = OVERRIDES[code]
                 now = self.percent[index] + change if change in (-10, -1, 1, 10) else change
                 self.percent[index] = min(200, max(10, now))
+                self.overridden = ms
             elif code == "18":
                 self.percent = [100, 100, 100]
                 self.late, resets = [], True
@@ -126,6 +129,9 @@ class Judge:
             self.percent = [100, 100, 100]
         elif text.startswith("[MSG:Disabled"):
             self.percent = [100, 100, 100]
+        elif text.startswith("[MSG:Pgm End"):
+            self.percent = [100, 100, 100]
+            self.unsure = self.serial and ms - self.overridden < STOPS
 
     def _answer(self, ms: int, text: str) -> None:
         if not self.pending and not self.late:
@@ -169,6 +175,8 @@ class Judge:
         feed = values["FS"].split(",")[0]
         if (at_rest and feed != "0") or (state in ("Idle", "Sleep", "Check") and "Ln" in values):
             raise FindingError(f"{ms} ms: {text} at rest")
+        if "Ov" in values and self.unsure:
+            self.percent, self.unsure = [int(part) for part in values["Ov"].split(",")], False
         if "Ov" in values and [int(part) for part in values["Ov"].split(",")] != self.percent:
             raise FindingError(f"{ms} ms: overrides are {values['Ov']} and not {self.percent}")
         if "Ln" in values:
