@@ -78,6 +78,23 @@ def test_home(session: Session) -> None:
     assert session.line("G0 X0.5").splitlines() == ["ALARM:2", "error:9"]
 
 
+@pytest.mark.parametrize("home", ["low", "high"])
+@pytest.mark.parametrize("home_switch", ["", '"home", '])
+def test_limits_are_at_their_ends(tmp_path: Path, home: str, home_switch: str) -> None:
+    """Whichever of them the axis homes at."""
+    switches = f'[{home_switch}"limit_low", "limit_high"]'
+    path = tmp_path / "machine.toml"
+    path.write_text(HEAD + "[switches]\nstop = true\n" + AXIS.format(name="X", home=home, switches=switches))
+    machine = read_machine(path)
+    with machine_at("model", machine) as engine:
+        session = Session(engine, machine)
+        assert session.line("$H") == "ok"
+        for target, low, high in ((-40, -27, -20), (20, 0, 7)):
+            assert session.line(f"G53 G0 X{target}") == "ok"
+            assert "ALARM:1" in session.settle() and low < session.fields("MPos")[0] < high
+            session.line("$X")
+
+
 @pytest.mark.parametrize(("code", "alarm"), [(0x18, 6), (0x84, 7)])
 def test_a_home_that_is_stopped(session: Session, code: int, alarm: int) -> None:
     session.grbl.type(b"$H\n")

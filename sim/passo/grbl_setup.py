@@ -205,7 +205,7 @@ def rig_config(
         config.start[motor] = start + (skews or {}).get(motor, 0)
     for axis, (travel, end) in enumerate(zip(travels, machine.ends, strict=True)):
         for switch in end.switches:
-            above = "limit_high" in (switch, f"limit_{end.home}")
+            above = switch == "limit_high" or (switch == "home" and end.home == "high")
             wires += [
                 (NUMBERS[switch], motor, axis, above, travel if above else 0)
                 for motor in range(len(rows))
