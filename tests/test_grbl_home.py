@@ -95,6 +95,47 @@ def test_limits_are_at_their_ends(tmp_path: Path, home: str, home_switch: str) -
             session.line("$X")
 
 
+@pytest.mark.parametrize("code", [0x85, 0x21, 0x84])
+def test_a_limit_on_the_way_to_rest_is_an_alarm(tmp_path: Path, code: int) -> None:
+    """The jog was canceled just before its limit. None follows on the way off the switch, or away from it."""
+    machine = machine_of(tmp_path, HEAD + "[switches]\nstop = true\n", '["limit_low", "limit_high"]')
+    with machine_at("model", machine) as engine:
+        session = Session(engine, machine)
+        assert session.line("$H") == "ok"
+        session.line("G53 G0 X-5")
+        session.rest()
+        session.line("$J=G91 X-50 F6000")
+        assert session.grbl.wait(lambda: session.fields("MPos")[0] < -19, 2)
+        session.byte(code)
+        session.run(0.5)
+        assert -26 < session.fields("MPos")[0] < -20 and session.report().startswith("Alarm")
+        assert session.log.count("ALARM:1") == 1 and session.line("G0 X0") == "error:9"
+        session.line("$X")
+        for way in "1.5", "20":
+            session.line(f"$J=G91 X{way} F600")
+            session.run(0.1)
+            session.byte(0x85)
+            session.run(0.3)
+            assert session.report().startswith("Idle")
+        assert session.log.count("ALARM") == 1
+
+
+def test_an_alarm_of_a_drive_on_the_way_to_rest_is_an_alarm(tmp_path: Path) -> None:
+    """Alarm 3, once, and it is no limit."""
+    machine = machine_of(tmp_path)
+    with machine_at("model", machine) as engine:
+        session = Session(engine, machine)
+        session.line("$X")
+        session.line("$J=G91 X-8 F6000")
+        session.run(0.1)
+        session.byte(0x85)
+        engine.set("alarm", 1)
+        session.run(0.3)
+        engine.set("alarm", 0)
+        session.run(0.3)
+        assert session.log.count("ALARM:3") == session.log.count("ALARM") == 1
+
+
 @pytest.mark.parametrize(("code", "alarm"), [(0x18, 6), (0x84, 7)])
 def test_a_home_that_is_stopped(session: Session, code: int, alarm: int) -> None:
     session.grbl.type(b"$H\n")

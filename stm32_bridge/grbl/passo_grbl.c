@@ -165,19 +165,19 @@ static void heed(struct passo_grbl *grbl, enum passo_player_event event, enum pa
 {
 	switch (event) {
 	case PASSO_PLAYER_TRAVEL:
-		passo_grbl_fail(grbl, PASSO_GRBL_SOFT_LIMIT, PASSO_GCODE_LOCKED);
+		passo_grbl_fail(grbl, PASSO_GRBL_SOFT_LIMIT);
 		return;
 	case PASSO_PLAYER_UNEXPECTED:
-		passo_grbl_fail(grbl, PASSO_GRBL_PROBE_LEVEL, PASSO_GCODE_OK);
+		passo_grbl_fail(grbl, PASSO_GRBL_PROBE_LEVEL);
 		return;
 	case PASSO_PLAYER_UNTOUCHED:
 	case PASSO_PLAYER_NO_PROBE:
-		passo_grbl_fail(grbl, PASSO_GRBL_PROBE_MISSED, PASSO_GCODE_OK);
+		passo_grbl_fail(grbl, PASSO_GRBL_PROBE_MISSED);
 		return;
 #ifndef PASSO_PLAIN_GCODE
 	case PASSO_PLAYER_SLOW:
 		passo_gcode_stop_spindle(grbl->player->gcode);
-		passo_grbl_fail(grbl, PASSO_GRBL_SPINDLE_SLOW, PASSO_GCODE_LOCKED);
+		passo_grbl_fail(grbl, PASSO_GRBL_SPINDLE_SLOW);
 		return;
 #endif
 	case PASSO_PLAYER_OFFSETS:
@@ -204,8 +204,7 @@ static void heed(struct passo_grbl *grbl, enum passo_player_event event, enum pa
 		break;
 	}
 	if (error != PASSO_OK)
-		passo_grbl_fail(grbl, error == PASSO_ERROR_LIMIT ? PASSO_GRBL_HARD_LIMIT : PASSO_GRBL_ABORTED,
-		    PASSO_GCODE_LOCKED);
+		passo_grbl_fault(grbl, error);
 }
 
 void passo_grbl_poll(struct passo_grbl *grbl)

@@ -171,29 +171,16 @@ enum passo_gcode_error passo_grbl_home(struct passo_grbl *grbl)
 	return PASSO_GCODE_OK;
 }
 
-static void fail(struct passo_grbl *grbl, enum passo_error error)
-{
-	enum passo_grbl_alarm alarm = PASSO_GRBL_ABORTED;
-
-#ifndef PASSO_CARTESIAN
-	tell_skewed(grbl);
-#endif
-	if (error == PASSO_ERROR_SWITCH_MISSED)
-		alarm = PASSO_GRBL_HOME_MISSED;
-	else if (error == PASSO_ERROR_SWITCH_LEVEL)
-		alarm = PASSO_GRBL_HOME_PULL_OFF;
-	else if (error == PASSO_ERROR_LIMIT)
-		alarm = PASSO_GRBL_HARD_LIMIT;
-	passo_grbl_fail(grbl, alarm, PASSO_GCODE_LOCKED);
-}
-
 void passo_grbl_poll_home(struct passo_grbl *grbl)
 {
 	struct passo *passo = grbl->player->feed->passo;
 	const enum passo_error error = passo_poll(passo);
 
 	if (error != PASSO_OK) {
-		fail(grbl, error);
+#ifndef PASSO_CARTESIAN
+		tell_skewed(grbl);
+#endif
+		passo_grbl_fault(grbl, error);
 		return;
 	}
 	if (passo_is_moving(passo) || passo_player_restart(grbl->player) != PASSO_OK)

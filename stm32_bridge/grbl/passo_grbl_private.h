@@ -99,7 +99,9 @@ static inline unsigned passo_grbl_motors_of(const struct passo_grbl *grbl, unsig
 }
 
 /* Reports an alarm, answers the current line, and stops. */
-void passo_grbl_fail(struct passo_grbl *grbl, enum passo_grbl_alarm alarm, enum passo_gcode_error error);
+void passo_grbl_fail(struct passo_grbl *grbl, enum passo_grbl_alarm alarm);
+/* The same with the alarm of an error of the driver. */
+void passo_grbl_fault(struct passo_grbl *grbl, enum passo_error error);
 void passo_grbl_begin_stop(struct passo_grbl *grbl);
 /* At rest: the program continues from the current position. Returns whether something was printed. */
 bool passo_grbl_end_stop(struct passo_grbl *grbl);

@@ -3,6 +3,7 @@
  */
 #include "passo_encoder.h"
 #include "passo_grbl_private.h"
+#include "passo_inputs.h"
 
 #define PERCENT_FULL 100u
 
@@ -78,20 +79,34 @@ static void lock(struct passo_grbl *grbl, enum passo_grbl_alarm alarm)
 	leave_check(grbl);
 }
 
-void passo_grbl_fail(struct passo_grbl *grbl, enum passo_grbl_alarm alarm, enum passo_gcode_error error)
+void passo_grbl_fail(struct passo_grbl *grbl, enum passo_grbl_alarm alarm)
 {
-	const bool probed = alarm == PASSO_GRBL_PROBE_MISSED;
+	const bool missed = alarm == PASSO_GRBL_PROBE_MISSED;
 
 	lock(grbl, alarm);
-	if (probed)
+	if (missed)
 		passo_grbl_report_probe(grbl);
 	if (grbl->owes)
-		passo_grbl_answer(grbl, error);
+		passo_grbl_answer(
+		    grbl, missed || alarm == PASSO_GRBL_PROBE_LEVEL ? PASSO_GCODE_OK : PASSO_GCODE_LOCKED);
 	grbl->owes = false;
 #ifndef PASSO_PLAIN_GCODE
 	grbl->touch = 0;
 #endif
 	passo_grbl_begin_stop(grbl);
+}
+
+void passo_grbl_fault(struct passo_grbl *grbl, enum passo_error error)
+{
+	enum passo_grbl_alarm alarm = PASSO_GRBL_ABORTED;
+
+	if (error == PASSO_ERROR_SWITCH_MISSED)
+		alarm = PASSO_GRBL_HOME_MISSED;
+	else if (error == PASSO_ERROR_SWITCH_LEVEL)
+		alarm = PASSO_GRBL_HOME_PULL_OFF;
+	else if (error == PASSO_ERROR_LIMIT)
+		alarm = PASSO_GRBL_HARD_LIMIT;
+	passo_grbl_fail(grbl, alarm);
 }
 
 /* Ctrl-X drops everything, and owes no answer. */
@@ -127,17 +142,18 @@ static void adopt(struct passo_grbl *grbl)
 #endif
 
 /* After e-stop, alarm, watchdog and following error as well. Whether the channel can move again. Only here an
- * e-stop shows that came after another stop. */
+ * e-stop or a limit shows that came after another stop, on the way to rest. */
 static bool clear(struct passo_grbl *grbl)
 {
 	struct passo *passo = grbl->player->feed->passo;
+	struct passo_readings now = {.estop = false};
 
-	if (passo_fault(passo) == PASSO_ERROR_ESTOP) {
-		if (!grbl->locked) /* it cut off the way to rest */
-			passo_grbl_fail(grbl, PASSO_GRBL_ABORTED, PASSO_GCODE_LOCKED);
-		if (passo->has_inputs && passo_clear_estop(passo) != PASSO_OK)
-			return false;
-	}
+	if (passo->has_inputs && passo_read_inputs(passo, &now) != PASSO_OK)
+		return false;
+	if (!grbl->locked && (now.estop || now.axes != 0u))
+		passo_grbl_fault(grbl, now.estop || now.alarm ? PASSO_ERROR_ESTOP : PASSO_ERROR_LIMIT);
+	if (now.estop && passo_clear_estop(passo) != PASSO_OK)
+		return false;
 #ifndef PASSO_CARTESIAN
 	if (passo_fault(passo) == PASSO_ERROR_FOLLOWING)
 		adopt(grbl);
@@ -270,7 +286,7 @@ static void act(struct passo_grbl *grbl, enum passo_grbl_act act)
 		cancel(grbl);
 		break;
 	case PASSO_GRBL_ACT_STOPS:
-		passo_grbl_fail(grbl, PASSO_GRBL_HOME_DOOR, PASSO_GCODE_LOCKED);
+		passo_grbl_fail(grbl, PASSO_GRBL_HOME_DOOR);
 		break;
 	case PASSO_GRBL_ACT_GOES_ON:
 		go_on(grbl);
