@@ -8,7 +8,7 @@ from typing import Any
 from passo.build import Parameters
 from passo.link import MICROSECONDS, Hardware, LinkError, error_name, error_text
 from passo.moves import Move, PinTiming, q32
-from passo.native import ffi, planner
+from passo.native import ffi, planner, unopened
 from passo.plan import struct_of
 from passo.registers import Cause, State
 
@@ -79,8 +79,8 @@ class Driver:
         self.clock_hz = clock_hz or engine.clock_hz
         self.lib = planner()
         self.hardware = beside.hardware if beside else Hardware(engine, tries, self.clock_hz)
-        self.host = beside.host if beside else ffi().new("struct passo_host *")
-        self.c = ffi().new("struct passo *")
+        self.host = beside.host if beside else unopened("passo_host")
+        self.c = unopened("passo")
         self.options = ffi().new("struct passo_options *", {"clock_hz": self.clock_hz, "channel": channel})
         if parameters:
             self.options.channels, self.options.axes = parameters.channels, parameters.axes

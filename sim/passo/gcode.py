@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from passo.failure import Failure
-from passo.native import ffi, planner
+from passo.native import ffi, planner, unopened
 
 NANOMETERS = 1_000_000  # per millimeter
 AXIS_LETTERS = "XYZABC"
@@ -118,7 +118,7 @@ class Gcode:
     def __init__(self, settings: GcodeSettings | None = None):
         self.settings = settings or GcodeSettings()
         self._c = planner()
-        self.c = ffi().new("struct passo_gcode *")
+        self.c = unopened("passo_gcode")
         self._c.passo_gcode_open(self.c, self.settings.struct())
 
     def execute(self, line: str | bytes) -> None:

@@ -18,7 +18,7 @@ from passo.failure import BadInputError, Failure
 from passo.gcode import Gcode, set_tool_lengths
 from passo.grbl_setup import SettingsFile, defaults_of, encoders_of, setup_of
 from passo.machine_file import MachineFile
-from passo.native import ffi, planner
+from passo.native import ffi, planner, unopened
 from passo.part import FOLLOWS_PER_SECOND, LOOPS_PER_SECOND, SLEWS_PER_SECOND
 from passo.path import LOOK_AHEAD, Path, PathFeed
 from passo.player import Player
@@ -59,7 +59,7 @@ class Grbl:
         self._sink = ffi().new("struct passo_grbl_sink *")
         self._sink.write = ffi().cast("void *", self._say)
         self.answers = 0  # ok and error so far
-        self.c = ffi().new("struct passo_grbl *")
+        self.c = unopened("passo_grbl")
         self._settings = settings
         self._defaults = defaults_of(machine)
         pages = settings.c if settings else ffi().NULL

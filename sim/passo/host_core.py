@@ -17,7 +17,7 @@ from passo.host_loop import HostLoop, Steps
 from passo.host_serial import SerialCore, is_serial
 from passo.link import error_name
 from passo.machine_file import MachineFile
-from passo.native import ffi, planner
+from passo.native import ffi, planner, unopened
 from passo.part import LOOPS_PER_SECOND, configure
 from passo.serial_port import SerialPort
 from passo.timed import TimedPoints
@@ -176,7 +176,7 @@ class LinuxDriver(Driver):
         self.lib = planner()
         self._name = ffi().new("char[]", device.encode())
         self._linux = ffi().new("struct passo_linux *")
-        self.c, self.host = ffi().new("struct passo *"), ffi().new("struct passo_host *")
+        self.c, self.host = unopened("passo"), unopened("passo_host")
         self.hardware, self.clock_hz = _NoHardware(), clock_hz
         self._device = ffi().new(
             "struct passo_linux_options *", {"device": self._name, "axes": axes, "speed_hz": speed_hz}

@@ -6,7 +6,7 @@ from typing import Any, Protocol
 
 from passo.engine import Engine
 from passo.failure import Failure
-from passo.native import ffi, planner
+from passo.native import ffi, planner, unopened
 from passo.registers import Verdict
 
 GAP = 64  # clocks after a frame, as PASSO_ENGINE_GAP
@@ -105,7 +105,7 @@ class Link:
         self.tries = tries
         self._hardware = Hardware(engine, tries)
         self._c = planner()
-        self.host = ffi().new("struct passo_host *")
+        self.host = unopened("passo_host")
         self._check(self._c.passo_host_open(self.host, self._hardware.c), "read of 0x000")
 
     @property

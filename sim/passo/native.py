@@ -74,6 +74,13 @@ def ffi() -> Any:
     return names["ffi"]
 
 
+def unopened(name: str) -> Any:
+    """Memory for a `struct name` that its open function is to fill: of no known content, as on a stack."""
+    made = ffi().new(f"struct {name} *")
+    ffi().buffer(made)[:] = b"\xa5" * ffi().sizeof(made[0])
+    return made
+
+
 def _declare(folder: Path) -> None:
     from cffi import FFI
 

@@ -11,7 +11,7 @@ import numpy as np
 from passo.build import Parameters
 from passo.driver import Driver, DriverError
 from passo.moves import q32
-from passo.native import ffi, planner
+from passo.native import ffi, planner, unopened
 from passo.part_options import LOOK_AHEAD as LOOK_AHEAD
 from passo.plan import PlanError
 
@@ -122,7 +122,7 @@ class Path:
     def __init__(self, settings: PathSettings, parameters: Parameters, look_ahead: int = LOOK_AHEAD):
         self.settings, self.parameters = settings, parameters
         self._c = planner()
-        self.c = ffi().new("struct passo_path_planner *")
+        self.c = unopened("passo_path_planner")
         self._items = ffi().new("struct passo_path_item[]", look_ahead)
         wanted = settings.struct(parameters)
         self._check(self._c.passo_path_open(self.c, wanted, self._items, look_ahead))
@@ -190,7 +190,7 @@ class PathFeed:
     def __init__(self, driver: Driver, path: Path):
         self.driver, self.path = driver, path
         self._c = planner()
-        self.c = ffi().new("struct passo_path_feed *")
+        self.c = unopened("passo_path_feed")
         self.open()
 
     def open(self) -> None:

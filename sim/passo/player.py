@@ -3,7 +3,7 @@
 
 from passo.driver import DriverError
 from passo.gcode import Gcode
-from passo.native import ffi, planner
+from passo.native import ffi, planner, unopened
 from passo.path import PathFeed
 
 
@@ -16,7 +16,7 @@ class Player:
         self._settings = feed.path.settings.struct(feed.path.parameters)
         self._machine = ffi().new("struct passo_player_machine *", {"axis": self._settings.axis})
         self._event = ffi().new("enum passo_player_event *")
-        self.c = ffi().new("struct passo_player *")
+        self.c = unopened("passo_player")
         self._c.passo_player_open(self.c, gcode.c, feed.c, self._machine)
 
     @property

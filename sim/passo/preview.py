@@ -13,7 +13,7 @@ from passo.expand.refusals import NO_PROBE, explain_text, no_probe
 from passo.gcode import GcodeError, GcodeSettings, set_tool_lengths
 from passo.link import error_text
 from passo.machine_file import MachineFile
-from passo.native import ffi, planner, previewer
+from passo.native import ffi, planner, previewer, unopened
 
 CHUNK = 2000  # lines between two reports of progress
 # struct passo_preview_line and struct passo_preview_ramp
@@ -62,7 +62,7 @@ class Checked:
 
 def new_gcode(settings: GcodeSettings, tools: Mapping[int, float]) -> Any:
     """A `struct passo_gcode` with tool lengths in mm."""
-    gcode = ffi().new("struct passo_gcode *")
+    gcode = unopened("passo_gcode")
     planner().passo_gcode_open(gcode, settings.struct())
     set_tool_lengths(gcode, tools)
     return gcode

@@ -6,7 +6,7 @@ from typing import Any
 
 from passo.driver import Driver, DriverError
 from passo.gcode import GcodeError, GcodeSettings
-from passo.native import ffi, planner
+from passo.native import ffi, planner, unopened
 from passo.path import LOOK_AHEAD, PathSettings
 
 MICROSECONDS = 1_000_000
@@ -20,7 +20,7 @@ class Program:
     ):
         self.driver = driver
         self._c = planner()
-        self.c = ffi().new("struct passo_program *")
+        self.c = unopened("passo_program")
         self._items = ffi().new("struct passo_path_item[]", look_ahead)
         settings = ffi().new("struct passo_program_settings *")
         settings.path = path.struct(driver.engine.parameters)[0]

@@ -10,7 +10,7 @@ from passo.driver import Driver
 from passo.failure import BadInputError
 from passo.machine_file import MachineFile
 from passo.moves import AXES_MAX
-from passo.native import ffi, planner
+from passo.native import ffi, planner, unopened
 
 POINT = np.dtype([("clocks", "u8"), ("target", "i8", AXES_MAX)])  # struct passo_timed_point
 UNIT = float(1 << 32)
@@ -45,7 +45,7 @@ class TimedPoints:
 
     def _check(self, file: MachineFile, begin: Sequence[int], numbers: Sequence[int]) -> None:
         c, names = self._c, [*file.letters, *(f"motor {name}" for name in file.motors)]
-        timed, line = ffi().new("struct passo_timed *"), ffi().new("struct passo_line *")
+        timed, line = unopened("passo_timed"), ffi().new("struct passo_line *")
         error = c.passo_timed_open(timed, self._settings, ffi().new("int32_t[8]", list(begin)))
         number = 0
         while error == c.PASSO_TIMED_OK and number < self._count:
