@@ -710,6 +710,15 @@ def test_a_move_without_its_drives_is_noted(bench: Bench) -> None:
     bench.ask("wait")
     bench.terminal.line("turn axis=2 steps_per_turn=200 rpm=60 acceleration=9999")
     assert bench.take() == "ok\n"
+    bench.ask("rpm 0")
+    bench.ask("wait")
+    # one that turns continuously, unless it is refused
+    bench.ask("enable 3")
+    bench.ask("disable 3")
+    bench.terminal.line("turn axis=3 steps_per_turn=200 rpm=60 top_rpm=50 acceleration=9999")
+    assert bench.take().startswith("error: ABOVE_TOP: ")
+    bench.terminal.line("turn axis=3 steps_per_turn=200 rpm=60 acceleration=9999")
+    assert bench.take() == DISABLED.format(3) + "ok\n"
 
 
 def test_a_move_without_its_drives_can_be_refused(bench: Bench) -> None:
@@ -889,7 +898,10 @@ def test_help_knows_every_command(bench: Bench) -> None:
     assert len(names) > 20
     for name in set(names) - {"run", "wait", "pin", "slip"}:
         bench.terminal.line(f"help {name}")
-        assert bench.take().startswith(f"  {name}")
+        text = bench.take().replace("[,..]", "").replace(f"  {name} ..", f"  {name}")
+        # each key, what it takes, and what it is if left out, in brackets
+        keys = re.sub(r" ([\w.]+=[^][ ]+|\[[\w.]+=[^][ ]+(, or [^][]+)?\])(?= |\n)", "", text)
+        assert re.fullmatch(rf"(  {name}\n)+ok\n", keys), text
     assert bench.ask("help nothing") == "error: unknown command 'nothing'"
 
 
