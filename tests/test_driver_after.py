@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: MIT
 """What the driver takes on while or after something else: nothing of that is left."""
 
+from typing import Any
+
 import pytest
 from passo.driver import Driver
+from passo.native import planner
 
 from tests.helpers.driver_wire import CLOCK_HZ, Q32, Wire, by_speed, error_of, finish, open_driver, struct
 from tests.test_driver_sessions import PARAMETERS, again, moves
@@ -73,3 +76,49 @@ def test_a_session_after_an_override_is_at_full_speed() -> None:
     state = struct("outputs_state")
     second.call("read_outputs", state)
     assert state.levels == 5
+
+
+@pytest.fixture
+def motor(driver: Driver) -> Any:
+    """Of 1600 steps per turn, which gains 600 rpm in a second."""
+    made = struct("motor")
+    assert planner().passo_motor_init(made, driver.c, 0, 1600, 0, 600 * Q32) == 0
+    return made
+
+
+def test_a_motor_that_was_aborted_in_rotation_stops_in_a_move(driver: Driver, motor: Any) -> None:
+    """How it was started before does not matter."""
+    lib, wire = planner(), driver.engine
+    assert lib.passo_motor_start_endless(motor, False, 60 * Q32, 60 * Q32) == 0
+    wire.run(20 * MS)
+    driver.call("abort")
+    finish(driver)
+    driver.call("clear")
+    assert lib.passo_motor_set_angle(motor, 3600 * Q32, 60 * Q32) == 0
+    assert lib.passo_motor_start(motor) == 0
+    wire.run(100 * MS)
+    assert lib.passo_motor_set_speed(motor, 30 * Q32) == 0 and motor.rpm == 30 * Q32
+    assert lib.passo_motor_stop(motor) == 0
+    wire.run(10 * MS)
+    stopped = wire.counted()[1]
+    wire.run(100 * MS)
+    assert wire.counted()[1] == stopped and 0 < stopped[0] < 1600
+    finish(driver)
+    driver.call("clear")
+    assert driver.positions() == stopped
+
+
+def test_a_motor_that_is_stopped_twice_keeps_its_ramp(driver: Driver, motor: Any) -> None:
+    """The second call changes nothing: it comes to rest in 0.1 s, and needs no clear."""
+    lib, wire = planner(), driver.engine
+    assert lib.passo_motor_start_endless(motor, False, 60 * Q32, 60 * Q32) == 0
+    wire.run(200 * MS)
+    begin = wire.counted()[1][0]
+    for _ in range(2):
+        assert lib.passo_motor_stop(motor) == 0
+        assert lib.passo_motor_set_speed(motor, 30 * Q32) == 0 and motor.rpm == 30 * Q32
+        wire.run(10 * MS)
+    finish(driver)
+    assert 80 <= wire.counted()[1][0] - begin <= 84  # 1600 steps/s, down to 0 in 0.1 s
+    assert lib.passo_motor_start(motor) == lib.PASSO_ERROR_PLAN + lib.PASSO_PLAN_NO_STEPS
+    assert driver.fault == "OK"

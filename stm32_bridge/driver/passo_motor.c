@@ -5,6 +5,7 @@
 
 #include <stddef.h>
 
+#include "passo_driver.h"
 #include "passo_math.h"
 
 #define SECONDS_PER_MINUTE 60u
@@ -90,15 +91,22 @@ enum passo_error passo_motor_start_endless(
 	    .minimum_rpm = motor->minimum_rpm,
 	    .acceleration = motor->acceleration,
 	};
-	error = passo_turn_start(motor->passo, &turning, rpm);
-	motor->endless = motor->endless || error == PASSO_OK;
-	return error;
+	return passo_turn_start(motor->passo, &turning, rpm);
 }
 
-/* Whether continuous rotation is in progress, as far as known. */
+/* Whether continuous rotation is in progress, or its end, as far as known. */
 static bool is_endless(const struct passo_motor *motor)
 {
-	return motor->endless && passo_is_moving(motor->passo);
+	const struct passo *passo = motor->passo;
+
+	return passo_is_moving(passo) && passo_driver_is_turning(passo) && !passo->has_aim
+	    && passo->turning.axis == motor->axis;
+}
+
+/* The result of a change, which comes too late for a rotation that is ending. */
+static enum passo_error unless_ending(enum passo_error error)
+{
+	return error == PASSO_ERROR_NOT_TURNING ? PASSO_OK : error;
 }
 
 enum passo_error passo_motor_set_speed(struct passo_motor *motor, uint64_t rpm)
@@ -106,7 +114,7 @@ enum passo_error passo_motor_set_speed(struct passo_motor *motor, uint64_t rpm)
 	enum passo_error error = check(motor);
 
 	if (error == PASSO_OK && is_endless(motor))
-		error = passo_turn_speed(motor->passo, rpm);
+		error = unless_ending(passo_turn_speed(motor->passo, rpm));
 	if (error == PASSO_OK)
 		motor->rpm = rpm;
 	return error;
@@ -118,10 +126,7 @@ enum passo_error passo_motor_stop(struct passo_motor *motor)
 
 	if (error != PASSO_OK)
 		return error;
-	error = is_endless(motor) ? passo_turn_stop(motor->passo) : passo_stop(motor->passo);
-	if (error == PASSO_OK)
-		motor->endless = false;
-	return error;
+	return is_endless(motor) ? unless_ending(passo_turn_stop(motor->passo)) : passo_stop(motor->passo);
 }
 
 bool passo_motor_is_turning(const struct passo_motor *motor)

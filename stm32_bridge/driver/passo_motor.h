@@ -26,7 +26,6 @@ struct passo_motor {
 	int64_t angle;           /* Q31.32 degrees: of the next start */
 	bool absolute;           /* the angle is counted from position 0, not from the end of the last move */
 	uint64_t rpm;            /* UQ32.32: of the next start */
-	bool endless;            /* the last start was continuous rotation */
 };
 
 /* Initializes a motor on an axis of an open channel. `steps_per_turn` is full steps times microsteps;
