@@ -76,16 +76,17 @@ def test_each_step_is_at_its_angle(lines: Lines, run_in: int, run_out: int) -> N
     assert max(abs(a - b) for a, b in zip(*passes, strict=True)) <= 1
 
 
-@pytest.mark.parametrize("behind", [2, 40, 100])
-def test_a_pass_that_begins_late_catches_up(behind: int) -> None:
+@pytest.mark.parametrize(("behind", "turns"), [(2, 1), (40, 1), (100, 1), (9000, 9)])
+def test_a_pass_that_begins_late_catches_up(behind: int, turns: int) -> None:
     """What should have begun some half counts before the index is in step after four times as many."""
     driver, shafts = machine()
-    lines = [(600, 6000)]
+    lines = [(600 * turns, 6000 * turns)]
     late = [
         at - angle + behind / 2
         for at, angle in zip(made(driver, shafts, lines, behind=behind), angles(lines), strict=True)
     ]
-    there = late[4 * behind // 10 + 10 :]  # ten half counts are a step
+    # ten half counts are a step; the path also makes what it is late
+    there = late[4 * behind // 10 + max(10, behind // 10 + 1) :]
     assert len(there) > 300 and max(map(abs, there)) <= 1
     assert max(late) <= behind / 2 + 1 and min(late) >= -1
 
@@ -100,9 +101,10 @@ def test_what_a_pass_refuses() -> None:
         "RAMP_TOO_LONG": the_pass([(9, 900)], run_in=300),
     }.items():
         assert error_of(driver, "pass", one) == name
-    many, other = the_pass([(9, 900)] * 4), the_pass([(9, 900)])
-    many.lines, other.encoder = 5, 4
-    assert error_of(driver, "pass", many) == error_of(driver, "pass", other) == "ARGUMENT"
+    many, other, wide = the_pass([(9, 900)] * 4), the_pass([(9, 900)]), the_pass([(9, 900)] * 4)
+    many.lines, other.encoder, wide.line[3].steps[4] = 5, 4, -1
+    for one in (many, other, wide):
+        assert error_of(driver, "pass", one) == "ARGUMENT"
     assert error_of(driver, "pass", ffi().NULL) == "ARGUMENT"
     assert error_of(driver, "pass", the_pass([(9, 900)], run_in=100, run_out=520)) == "RAMP_TOO_LONG"
     fast = the_pass([(880, 900)])

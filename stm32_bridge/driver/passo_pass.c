@@ -2,6 +2,7 @@
  * Passes: lines whose substeps are a power of two for each count, under common ramps.
  */
 #include "passo_driver.h"
+#include "passo_math.h"
 #include "passo_plan_draft.h"
 
 #ifndef PASSO_WITHOUT_THREADS
@@ -78,7 +79,7 @@ static enum passo_error add_ramps(
 		in = in > RUN_IN_TICKS ? in : RUN_IN_TICKS;
 	else
 		in = ticks_of(passo, 2u * behind, scale) + CATCH_UP_TICKS;
-	const uint64_t extra = (behind * half_count * speed / in) >> tick;
+	const uint64_t extra = passo_mul_div(behind * half_count, speed, in) >> tick;
 	const uint64_t before = behind * half_count + (pass->run_in > 0u ? in << (tick + 1u) : in << tick);
 	const uint64_t all = length * half_count, after = out << (tick - 1u);
 
@@ -114,6 +115,11 @@ static enum passo_error check(const struct passo *passo, const struct passo_pass
 		return PASSO_ERROR_ARGUMENT_POINTER;
 	if (pass->lines == 0u || pass->lines > PASSO_PASS_LINES_MAX)
 		return PASSO_ERROR_ARGUMENT;
+	for (unsigned i = passo->machine.axes; i < PASSO_AXES_MAX; i++) {
+		for (unsigned line = 0; line < pass->lines; line++)
+			if (pass->line[line].steps[i] != 0)
+				return PASSO_ERROR_ARGUMENT_AXIS;
+	}
 	return pass->encoder < passo->axes ? PASSO_OK : PASSO_ERROR_ARGUMENT_AXIS;
 }
 
