@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 from passo.driver import Driver
-from passo.native import planner
+from passo.native import ffi, planner
 
 from tests.helpers.driver_wire import CLOCK_HZ, Q32, Wire, by_speed, error_of, finish, open_driver, struct
 from tests.test_driver_sessions import PARAMETERS, again, moves
@@ -76,6 +76,20 @@ def test_a_session_after_an_override_is_at_full_speed() -> None:
     state = struct("outputs_state")
     second.call("read_outputs", state)
     assert state.levels == 5
+
+
+def test_a_plan_of_an_endless_line_has_no_target(driver: Driver, wire: Wire) -> None:
+    """Its ramps end it: nobody knows where before it is there."""
+    lib, plan = planner(), struct("plan")
+    course = struct("course", speed=20_000 * Q32, top_speed=20_000 * Q32, acceleration=2_000_000 * Q32)
+    assert lib.passo_plan_course(lib.passo_machine(driver.c), course, 1000, plan) == 0
+    driver.call("move_plan", plan, ffi().NULL)
+    target = ffi().new("int32_t[8]")
+    assert error_of(driver, "target", target) == "MOVING"
+    finish(driver)
+    driver.call("target", target)
+    assert driver.positions() == wire.counted()[1] == list(target[0:4]) == [1000, 0, 0, 0]
+    assert driver.fault == "OK"
 
 
 @pytest.fixture

@@ -62,7 +62,9 @@ void passo_driver_expect(struct passo *passo, const struct passo_line *line)
 		passo->axis[i].backward = backward;
 		passo->movers = (uint8_t)(passo->movers | 1u << i);
 	}
-	if (passo->expects == PASSO_EXPECT_NOTHING)
+	if (line->endless)
+		passo->expects = PASSO_EXPECT_END;
+	else if (passo->expects == PASSO_EXPECT_NOTHING)
 		passo->expects = PASSO_EXPECT_POSITIONS;
 	passo->idle_looks = 0;
 }

@@ -91,7 +91,7 @@ bool passo_driver_is_turning(const struct passo *passo);
 void passo_driver_assume_worse(struct passo *passo, enum passo_assumed worse);
 /* The effect of a command is unknown: it may have queued something. */
 void passo_driver_break(struct passo *passo);
-/* Adds a line to the expected end positions. */
+/* Adds a line to the expected end positions; of an endless one the end is unknown. */
 void passo_driver_expect(struct passo *passo, const struct passo_line *line);
 /* All motions have ended, at these positions. */
 void passo_driver_ended(struct passo *passo, const int32_t *positions);

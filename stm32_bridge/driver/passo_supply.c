@@ -96,8 +96,6 @@ enum passo_error passo_driver_take_lines(struct passo *passo, size_t *length)
 		if (line.last)
 			passo->lines = PASSO_SUPPLY_DONE;
 		passo_driver_expect(passo, &line);
-		if (line.endless)
-			passo->expects = PASSO_EXPECT_END;
 		count++;
 	}
 	passo->packed_lines = (uint8_t)count;

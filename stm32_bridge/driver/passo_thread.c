@@ -116,11 +116,7 @@ enum passo_error passo_thread(struct passo *passo, const struct passo_thread *th
 	    .follow = true, .wait_index = thread->wait_index, .source = thread->encoder, .scale = scale};
 	plan.velocity_peak = plan.ramps[0].velocity_end;
 	error = passo_driver_follow(passo, &follow, thread->top_speed, &plan);
-	if (error == PASSO_OK)
-		error = passo_driver_queue(passo, &plan, NULL);
-	if (error == PASSO_OK && thread->endless)
-		passo->expects = PASSO_EXPECT_END;
-	return error;
+	return error == PASSO_OK ? passo_driver_queue(passo, &plan, NULL) : error;
 }
 
 enum passo_error passo_read_thread(struct passo *passo, struct passo_thread_state *state)
