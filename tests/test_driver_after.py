@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 from passo.driver import Driver
 from passo.native import ffi, planner
+from passo.registers import ADDRESS_CHANNEL_BASE, CHANNEL_TRIGGER
 
 from tests.helpers.driver_wire import CLOCK_HZ, Q32, Wire, by_speed, error_of, finish, open_driver, struct
 from tests.test_driver_sessions import PARAMETERS, again, moves
@@ -136,3 +137,34 @@ def test_a_motor_that_is_stopped_twice_keeps_its_ramp(driver: Driver, motor: Any
     assert 80 <= wire.counted()[1][0] - begin <= 84  # 1600 steps/s, down to 0 in 0.1 s
     assert lib.passo_motor_start(motor) == lib.PASSO_ERROR_PLAN + lib.PASSO_PLAN_NO_STEPS
     assert driver.fault == "OK"
+
+
+@pytest.mark.parametrize(("lost", "told"), [("arm", "STUCK_LOW"), ("disarm", "SWITCH_MISSED")])
+def test_no_trigger_of_a_probe_stops_a_move(lost: str, told: str) -> None:
+    """Where its frame is lost on the way, or its reply, nothing moves before a clear."""
+    for arrives in (False, True):
+        driver = open_driver(Wire(PARAMETERS))
+        wire = driver.engine
+        driver.call("configure_motion", 2 * MS, 2 * MS, 0)
+        driver.call("configure_probe", False)
+
+        def cut(words: list[int], wire: Wire = wire) -> list[int] | None:
+            header, command = wire.requests[-1][:2]
+            is_it = header & 0xFFF == ADDRESS_CHANNEL_BASE + CHANNEL_TRIGGER
+            return None if is_it and (command == 0) == (lost == "disarm") else words
+
+        if arrives:
+            wire.back = lambda words, cut=cut: cut(words) or [0] * len(words)
+        else:
+            wire.there = cut
+        probe = struct("probe", steps=[500, 0, 0], speed=20_000 * Q32, acceleration=2_000_000 * Q32)
+        error = error_of(driver, "probe", probe)
+        assert (error if lost == "arm" else error_of(driver, "wait", CLOCK_HZ)) == told
+        wire.there = wire.back = list
+        assert error_of(driver, "move_by_speed", by_speed([3000, 0, 0])) == "BROKEN"
+        driver.call("clear")
+        driver.call("move_by_speed", by_speed([3000, 0, 0]))
+        wire.run(MS)
+        wire.engine.set("probe", 1)
+        driver.wait(1)
+        assert driver.positions()[0] == wire.counted()[1][0] == 3000 + 500 * (lost == "disarm")

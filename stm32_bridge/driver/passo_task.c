@@ -4,15 +4,16 @@
  */
 #include "passo_driver.h"
 
-/* Ends the task. A trigger that is still armed must not stop a later motion. */
+/* Ends the task. A trigger that may still be armed must not stop a later motion: passo_clear() disarms it. */
 static enum passo_error settle(struct passo *passo, enum passo_error error)
 {
 	passo->task.inside = false;
 	if (error == PASSO_PENDING)
 		return PASSO_OK;
 	passo->task.kind = PASSO_TASK_NONE;
-	if (passo->task.armed && !passo_driver_is_link_error(error) && error != PASSO_ERROR_CORE_RESET)
-		passo_driver_disarm(passo); /* if it fails, passo_clear() does it */
+	if (passo->task.armed
+	    && (passo_driver_is_link_error(error) || passo_driver_disarm(passo) != PASSO_OK))
+		passo_driver_assume_worse(passo, PASSO_ASSUMED_BROKEN);
 	return error;
 }
 
