@@ -7,7 +7,7 @@ import pytest
 from passo.build import Parameters
 from passo.driver import Driver, Source
 from passo.native import ffi
-from passo.registers import Cause, State, TriggerAction, TriggerSource
+from passo.registers import Cause, Operation, State, TriggerAction, TriggerSource
 
 from tests.helpers.driver_wire import CLOCK_HZ, Q32, Wire, by_speed, error_of, open_driver, path, struct
 
@@ -115,6 +115,30 @@ def test_an_alarm_and_an_estop(driver: Driver, pin: str, name: str, overtaken: b
         driver.call("clear_estop")
     driver.call("clear")
     assert homed(driver) == NONE
+
+
+@pytest.mark.parametrize("pin", ["limit_low", "probe"])
+def test_a_stop_that_was_not_made_soft(driver: Driver, pin: str) -> None:
+    """It is as hard as before if the frame of its setting did not arrive."""
+
+    def set_up(soft: bool) -> str:
+        if pin == "limit_low":
+            config = struct("input_config", limit_low=True, limit_soft=soft)
+            return error_of(driver, "configure_inputs", 0, config)
+        action = TriggerAction.SOFT_STOP if soft else TriggerAction.HARD_STOP
+        return error_of(
+            driver, "arm_trigger", struct("trigger_config", source=TriggerSource.PROBE, action=action)
+        )
+
+    wire = driver.engine
+    assert set_up(soft=False) == "OK"
+    wire.there = lambda words: None if words[0] >> 28 == Operation.WRITE else words
+    assert set_up(soft=True) == "STUCK_LOW"
+    wire.there = list
+    begin(driver, (-3000, 0, 0))
+    wire.engine.set(pin, 1)
+    assert end(driver) == ("LIMIT" if pin == "limit_low" else "TRIGGER")
+    assert homed(driver) == [False, True, True]
 
 
 def test_an_alarm_at_rest(driver: Driver) -> None:

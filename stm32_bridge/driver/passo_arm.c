@@ -36,12 +36,16 @@ enum passo_error passo_driver_arm(struct passo *passo, const struct passo_trigge
 		error = PASSO_ERROR_ARGUMENT;
 	if (error != PASSO_OK)
 		return error;
-	passo->hard_trigger = config->action == PASSO_TRIGGER_ACTION_HARD_STOP;
-	return write_trigger(passo, (struct passo_channel_trigger){.arm = true,
-					.action = config->action,
-					.falling = config->falling,
-					.axis = config->axis,
-					.source = config->source});
+	const bool hard = config->action == PASSO_TRIGGER_ACTION_HARD_STOP;
+	passo->hard_trigger |= hard; /* until it is armed, the one before may be */
+	error = write_trigger(passo, (struct passo_channel_trigger){.arm = true,
+					 .action = config->action,
+					 .falling = config->falling,
+					 .axis = config->axis,
+					 .source = config->source});
+	if (error == PASSO_OK)
+		passo->hard_trigger = hard;
+	return error;
 }
 
 enum passo_error passo_driver_disarm(struct passo *passo)

@@ -38,17 +38,19 @@ enum passo_error passo_configure_inputs(
 	    .limit_high_inverted = config->limit_high_inverted,
 	    .limit_low_inverted = config->limit_low_inverted};
 	const uint32_t word = passo_pack_axis_inputs(&inputs);
-	passo->axis[axis].switches = 0;
+	struct passo_axis_memory *memory = &passo->axis[axis];
+	memory->switches = 0;
+	memory->limit_soft = false;
 	error = passo_driver_write(passo,
 	    (uint16_t)(PASSO_CHANNEL_AXIS_BASE + axis * PASSO_CHANNEL_AXIS_STRIDE + PASSO_AXIS_INPUTS), &word,
 	    1);
-	passo->axis[axis].limit_soft = config->limit_soft;
-	if (error == PASSO_OK)
-		passo->axis[axis].switches =
-		    (uint8_t)((unsigned)config->limit_low << PASSO_TRIGGER_SOURCE_LIMIT_LOW
-		              | (unsigned)config->limit_high << PASSO_TRIGGER_SOURCE_LIMIT_HIGH
-		              | (unsigned)config->home << PASSO_TRIGGER_SOURCE_HOME);
-	return passo_driver_moving(error);
+	if (error != PASSO_OK)
+		return passo_driver_moving(error);
+	memory->limit_soft = config->limit_soft;
+	memory->switches = (uint8_t)((unsigned)config->limit_low << PASSO_TRIGGER_SOURCE_LIMIT_LOW
+	                             | (unsigned)config->limit_high << PASSO_TRIGGER_SOURCE_LIMIT_HIGH
+	                             | (unsigned)config->home << PASSO_TRIGGER_SOURCE_HOME);
+	return PASSO_OK;
 }
 
 static enum passo_error write_probe(struct passo *passo, bool clear)
