@@ -384,7 +384,10 @@ def test_what_is_refused(driver: Driver, wire: Wire) -> None:
     assert wire.frames == before
     closed = ffi().new("struct passo *")
     lib = planner()
-    for name, arguments in {"poll": (), "move_by_speed": (LONG,), "hold": (), "wait": (0,)}.items():
+    for name, arguments in {
+        **{"poll": (), "move_by_speed": (LONG,), "hold": (), "wait": (0,)},
+        **{"turn_stop": (), "turn_speed": (Q32,), "read_thread": (null,)},
+    }.items():
         assert getattr(lib, f"passo_{name}")(closed, *arguments) == lib.PASSO_ERROR_NOT_OPEN
         assert getattr(lib, f"passo_{name}")(null, *arguments) == lib.PASSO_ERROR_ARGUMENT
     assert lib.passo_fault(closed) == lib.PASSO_ERROR_NOT_OPEN

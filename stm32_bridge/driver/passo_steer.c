@@ -74,10 +74,8 @@ static enum passo_error withdraw(struct passo *passo)
 /* Reads the state of a motion whose ramps can be changed. */
 static enum passo_error look(struct passo *passo, bool stop)
 {
-	enum passo_error error = passo_driver_check(passo);
+	enum passo_error error = passo_driver_require_sent(passo, PASSO_POST_RUN);
 
-	if (error == PASSO_OK)
-		error = passo_driver_require_sent(passo, PASSO_POST_RUN);
 	if (error != PASSO_OK)
 		return error;
 	if (passo_driver_is_broken(passo))

@@ -121,8 +121,6 @@ enum passo_error passo_thread(struct passo *passo, const struct passo_thread *th
 
 enum passo_error passo_read_thread(struct passo *passo, struct passo_thread_state *state)
 {
-	const unsigned index =
-	    PASSO_CHANNEL_ENCODER_BASE + passo->spindle * PASSO_CHANNEL_ENCODER_STRIDE + PASSO_ENCODER_INDEX;
 	uint32_t word, edges;
 	enum passo_error error = passo_driver_check_encoders(passo);
 
@@ -131,8 +129,11 @@ enum passo_error passo_read_thread(struct passo *passo, struct passo_thread_stat
 	if (error == PASSO_OK)
 		error = passo_host_read(
 		    passo->host, (uint16_t)(passo->base + PASSO_CHANNEL_FOLLOW_STATE), &word, 1);
-	if (error == PASSO_OK)
-		error = passo_host_read(passo->host, (uint16_t)(passo->base + index), &edges, 1);
+	if (error != PASSO_OK)
+		return error;
+	const unsigned index =
+	    PASSO_CHANNEL_ENCODER_BASE + passo->spindle * PASSO_CHANNEL_ENCODER_STRIDE + PASSO_ENCODER_INDEX;
+	error = passo_host_read(passo->host, (uint16_t)(passo->base + index), &edges, 1);
 	if (error != PASSO_OK)
 		return error;
 	const struct passo_channel_follow_state now = passo_unpack_channel_follow_state(word);

@@ -42,9 +42,12 @@ static enum passo_plan_error plan_speed(
 /* Queues a ramp to another speed, or to rest. */
 static enum passo_error turn_on(struct passo *passo, bool stop, uint64_t rpm)
 {
-	struct passo_steering steering = {.stop = stop, .late = passo->late};
-	enum passo_error error = PASSO_ERROR_LATE;
+	enum passo_error error = passo_driver_check(passo);
 
+	if (error != PASSO_OK)
+		return error;
+	struct passo_steering steering = {.stop = stop, .late = passo->late};
+	error = PASSO_ERROR_LATE;
 	while (error == PASSO_ERROR_LATE && passo_driver_steers(passo, &steering)) {
 		enum passo_plan_error refused;
 		struct passo_sight sight;
