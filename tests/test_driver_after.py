@@ -168,3 +168,34 @@ def test_no_trigger_of_a_probe_stops_a_move(lost: str, told: str) -> None:
         wire.engine.set("probe", 1)
         driver.wait(1)
         assert driver.positions()[0] == wire.counted()[1][0] == 3000 + 500 * (lost == "disarm")
+
+
+@pytest.mark.parametrize("call", ["turn_stop", "jog_cancel"])
+def test_an_end_behind_a_hold_that_is_not_acknowledged(driver: Driver, wire: Wire, call: str) -> None:
+    """It is not forgotten: a resume does not turn on."""
+    driver.call("jog", jog())
+    wire.run(20 * MS)
+    wire.there = lambda _: None
+    assert error_of(driver, "hold") == "STUCK_LOW"
+    assert error_of(driver, call) == "NOT_HELD" and driver.fault == "NOT_STOPPED"
+    wire.there = list
+    finish(driver)
+    driver.call("resume")
+    wire.run(20 * MS)
+    assert error_of(driver, "move_by_speed", by_speed([5, 0, 0, 0])) == "STOPPED"
+    driver.call("clear")
+    assert driver.positions() == wire.counted()[1]
+    driver.call("move_by_speed", by_speed([5, 0, 0, 0]))
+
+
+def test_a_move_behind_a_hold_that_is_not_acknowledged_has_no_such_end(driver: Driver, wire: Wire) -> None:
+    """It continues with the resume, as without the call."""
+    driver.call("move_by_speed", by_speed([9000, 0, 0, 0]))
+    wire.run(5 * MS)
+    wire.there = lambda _: None
+    assert error_of(driver, "hold") == "STUCK_LOW"
+    assert error_of(driver, "jog_cancel") == "NOT_HELD" and driver.fault == "NOT_HELD"
+    wire.there = list
+    driver.call("resume")
+    finish(driver)
+    assert driver.positions() == wire.counted()[1] == [9000, 0, 0, 0]

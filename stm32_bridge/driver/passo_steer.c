@@ -181,8 +181,9 @@ enum passo_error passo_driver_steered(
 		passo->expects = PASSO_EXPECT_TURN_END;
 	if (!steering->stop)
 		return error == PASSO_ERROR_LATE && steering->overdue ? PASSO_OK : error;
-	/* a stop by ramp that is late, or not acknowledged, becomes a soft stop */
-	if (error == PASSO_ERROR_LATE || passo_driver_is_link_error(error))
+	/* a stop by ramp that is late, not acknowledged, or behind a hold that is not, becomes a soft stop */
+	if (error == PASSO_ERROR_LATE || passo_driver_is_link_error(error)
+	    || (error == PASSO_ERROR_NOT_HELD && passo->expects == PASSO_EXPECT_TURNING))
 		passo_driver_halt(passo, PASSO_DUE_STOP);
 	return error;
 }
