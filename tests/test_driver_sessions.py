@@ -244,6 +244,23 @@ def test_override_and_hold_at_rest(first: Driver) -> None:
     moves(second)
 
 
+def test_the_polarity_of_a_probe_outlives_cleared_flags(first: Driver) -> None:
+    """The driver does not know it before it is configured."""
+    readings = struct("readings")
+    first.call("configure_probe", True)
+    first.engine.run(MS)
+    second = again(first)
+    second.call("clear_flags")
+    first.engine.run(MS)
+    second.call("read_inputs", readings)
+    assert readings.probe and not readings.unknown
+    second.call("configure_probe", False)
+    second.call("clear_flags")
+    first.engine.run(MS)
+    second.call("read_inputs", readings)
+    assert not readings.probe and not readings.was_probe
+
+
 def test_another_host(first: Driver) -> None:
     """It is taken over; the other one is notified with its next frame."""
     jog(first, steps=100)

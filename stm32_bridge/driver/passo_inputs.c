@@ -156,7 +156,8 @@ enum passo_error passo_clear_flags(struct passo *passo)
 
 	if (error == PASSO_OK)
 		error = passo_driver_write(passo, PASSO_CHANNEL_INPUT_CLEAR, &word, 1);
-	return error != PASSO_OK ? error : write_probe(passo, true);
+	/* else its polarity is unknown, and stays */
+	return error == PASSO_OK && passo->probe_fitted ? write_probe(passo, true) : error;
 }
 
 enum passo_error passo_clear_estop(struct passo *passo)
