@@ -100,6 +100,25 @@ def test_home(sign: int, start: int, pull_off: int) -> None:
     driver.wait(1)
 
 
+def test_no_setting_changes_between_two_motions_of_a_home() -> None:
+    """Also where the host has not seen the end of the first one: all that need rest wait for the last one."""
+    driver = driver_of(machine_of(Switch("home", 0, -2000)))
+    array, late = homes(home(pull_off=50)), CLOCK_HZ // 10
+    driver.call("home", array, 1)
+    phases = set()
+    while driver.is_moving:
+        driver.engine.run(late)
+        phases.add(driver.c.task.phase)
+        assert error_of(driver, "enable", 0, False) == "MOVING"
+        assert error_of(driver, "configure_inputs", 0, struct("input_config", home=True)) == "MOVING"
+        assert error_of(driver, "configure_probe", True) == "MOVING"
+        driver.poll()
+    assert len(phases) == 4
+    assert_origin(driver, 0, -2000)
+    driver.call("enable", 0, False)
+    assert not is_homed(driver)
+
+
 @pytest.mark.parametrize("limit_soft", [True, False])
 @pytest.mark.parametrize("start", [1000, -50])
 def test_home_on_a_limit(limit_soft: bool, start: int) -> None:

@@ -65,6 +65,8 @@ enum passo_error passo_driver_require_rest(struct passo *passo)
 {
 	const struct passo_snapshot *snapshot = &passo->snapshot;
 
+	if (passo->task.kind != PASSO_TASK_NONE)
+		return PASSO_ERROR_MOVING; /* perhaps between two of its motions */
 	for (unsigned looks = 0; looks < LOOKS_AT_REST; looks++) {
 		enum passo_error error = passo_driver_look_at_rest(passo);
 		if (error != PASSO_OK)
