@@ -12,7 +12,7 @@ from passo.driver import Driver
 from passo.engine import model_engine
 from passo.machine import Machine, Switch
 from passo.native import ffi, planner
-from passo.registers import Cause, State, TriggerSource
+from passo.registers import Cause, Operation, State, TriggerSource
 
 from tests.helpers.driver_wire import CLOCK_HZ, Q32, Wire, by_speed, error_of, open_driver, struct
 from tests.helpers.random_plans import SEED
@@ -206,6 +206,34 @@ def test_a_motor_is_homed_by_its_tracker(axis: int, begin: int, pull_off: int, p
     settle(driver, rig, 1)
     driver.call("zero")
     assert reading(driver, axis).position == 0
+
+
+@pytest.mark.parametrize("arrives", [False, True])
+def test_zero_on_a_dying_wire(arrives: bool) -> None:
+    """Executed or not: the tracker is at 0, moves only to its next target, and counts from there."""
+    driver, wire = machine()
+    one = track()
+    driver.call("configure_tracker", one)
+    driver.call("track_to", one, 50)
+    settle(driver, wire)
+
+    def cut(words: list[int]) -> list[int] | None:
+        return None if wire.requests[-1][0] >> 28 == Operation.WRITE else words
+
+    if arrives:
+        wire.back = lambda words: cut(words) or [0] * len(words)
+    else:
+        wire.there = cut
+    assert error_of(driver, "zero") == "STUCK_LOW"
+    wire.there = wire.back = list
+    finish(driver, wire)
+    driver.call("track_again")
+    wire.run(wire.clock_hz // 100)
+    assert reading(driver).position == 0 and wire.counted()[1][0] == 50
+    driver.call("track_to", one, -30)
+    settle(driver, wire)
+    assert reading(driver).position == -30 and wire.counted()[1][0] == 20
+    assert driver.positions() == [0, 0, 0, 0] and driver.fault == "OK"
 
 
 def test_what_a_tracker_cannot_home() -> None:

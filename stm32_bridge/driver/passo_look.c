@@ -89,8 +89,11 @@ enum passo_error passo_driver_take_off_trackers(struct passo *passo, uint32_t *p
 		return PASSO_OK;
 	const enum passo_error error = once ? passo_host_read_once(passo->host, address, words, axes)
 	                                    : passo_host_read(passo->host, address, words, axes);
-	for (size_t i = 0; error == PASSO_OK && i < axes; i++)
+	for (size_t i = 0; error == PASSO_OK && i < axes; i++) {
 		positions[i] -= words[i];
+		if (passo->zero_due)
+			passo->axis[i].tracked_from = words[i];
+	}
 	return error;
 }
 #endif

@@ -133,13 +133,14 @@ enum passo_error passo_zero(struct passo *passo)
 		passo->expects = PASSO_EXPECT_END; /* the next polls read the positions */
 		passo->zero_due = true;
 	}
-	if (error != PASSO_OK)
-		return passo_driver_moving(error);
 #ifndef PASSO_WITHOUT_TRACKERS
-	passo->tracked = passo->parked = 0;
-	for (unsigned i = 0; i < passo->axes; i++)
+	if (error == PASSO_OK || passo->zero_due)
+		passo->tracked = passo->parked = 0;
+	for (unsigned i = 0; error == PASSO_OK && i < passo->axes; i++)
 		passo->axis[i].tracked_from = 0;
 #endif
+	if (error != PASSO_OK)
+		return passo_driver_moving(error);
 	const int32_t zeros[PASSO_AXES_MAX] = {0};
 	for (unsigned i = 0; i < passo->axes; i++)
 		passo->axis[i].offset = 0;
