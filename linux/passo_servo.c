@@ -301,9 +301,10 @@ static void control(struct passo_servo *servo)
 		servo->sum = between(servo->sum + servo->error, -SUM_MAX, SUM_MAX);
 }
 
+/* What is sent no more would leave the core at rest, but in motion. */
 static enum passo_error fail(struct passo_servo *servo, enum passo_error error)
 {
-	servo->phase = PASSO_SERVO_OFF;
+	passo_servo_stop(servo);
 	return error;
 }
 
@@ -483,10 +484,8 @@ enum passo_error passo_servo_write(struct passo_servo *servo, const int64_t *com
 		return PASSO_ERROR_ARGUMENT_POINTER;
 	if (servo->phase == PASSO_SERVO_OFF)
 		return PASSO_ERROR_NOT_PREPARED;
-	if (waiting(servo) == PASSO_SERVO_LINES) {
-		passo_servo_stop(servo);
-		return PASSO_ERROR_FULL;
-	}
+	if (waiting(servo) == PASSO_SERVO_LINES)
+		return fail(servo, PASSO_ERROR_FULL);
 	add_line(servo, commands);
 	const enum passo_error error = servo->phase == PASSO_SERVO_FILLS ? fill(servo) : run(servo);
 	return error == PASSO_OK ? PASSO_OK : fail(servo, error);

@@ -11,7 +11,7 @@ import pytest
 from passo.driver import DriverError
 from passo.engine import model_engine, moves_of
 from passo.native import ffi
-from passo.registers import Cause, State
+from passo.registers import Cause, Operation, State
 from passo.toolchain import paths
 
 from benchmarks.servo import (
@@ -107,6 +107,41 @@ def test_bit_errors() -> None:
     noise = Noise(random.Random(4), 1e-4)
     check_in_step(run(SETTING, SECONDS, waves(3, SECONDS), 0, wake(4), noise))
     assert noise.flips > 10
+
+
+class DeafReads(Noise):
+    """No reply to a read arrives while it is on."""
+
+    on_now = reads = False
+
+    def there(self, words: list[int]) -> list[int]:
+        self.reads = words[0] >> 28 == Operation.READ
+        return words
+
+    def back(self, words: list[int]) -> list[int]:
+        return [0] * len(words) if self.reads and self.on_now else words
+
+
+def test_a_link_that_fails_in_a_read_of_the_state() -> None:
+    """Of a call that is late: the axes stop as after any error, and start again."""
+    with model_engine(SETTING.core, SETTING.clock_hz) as engine:
+        noise = DeafReads(random.Random(6), 1)
+        servo = Servo(engine, SETTING, noise=noise)
+        servo.start()
+        for call in range(300):
+            servo.call([0.01 * call, 0, 0])
+        servo.wait_until(engine.clock + SETTING.clock_hz / 50)
+        noise.on_now = True
+        with pytest.raises(DriverError, match="STUCK_LOW"):
+            for call in range(300, 310):
+                servo.call([0.01 * call, 0, 0])
+        noise.on_now = False
+        for _ in range(100):
+            servo.wait_until(engine.clock + SETTING.clock_hz / 1000)
+            servo.driver.poll()
+        assert servo.driver.snapshot().state == State.STOPPED
+        assert servo.driver.positions()[0] == moves_of(servo.pins, 0).sum() > 0
+        servo.start()
 
 
 @pytest.mark.parametrize("call", [700, 1133])
