@@ -99,6 +99,16 @@ def test_every_jog_is_answered(session: GrblConsole, code: bytes) -> None:
     assert there > -60 and there - 12 < x_of(session) < there
 
 
+@pytest.mark.parametrize("lines", [1, 3])
+def test_a_jog_that_is_canceled_before_it_begins(session: GrblConsole, lines: int) -> None:
+    """Where both come at once to a machine at rest: it is answered, and nothing moves."""
+    answered = len(session.answers)
+    session.grbl.type(b"$J=G91 X-5 F6000\n" * lines + b"\x85")
+    session.finish()
+    assert session.answers[answered:] == ["ok"] * lines and x_of(session) == 0
+    assert session.status()["state"] == "Idle"
+
+
 def test_lines_after_the_end_of_a_jog_are_taken(session: GrblConsole) -> None:
     """In a jog G-code is error 9, once it has been canceled it is not."""
     session.send(b"$J=G91 X-50 F6000\n", 0.1)

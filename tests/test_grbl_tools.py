@@ -239,6 +239,24 @@ def test_a_probe_that_fails(session: GrblConsole) -> None:
     assert session.fields("MPos")[2] == -5
 
 
+@pytest.mark.parametrize("reset", [True, False])
+def test_a_probe_that_an_estop_ends_is_over(session: GrblConsole, reset: bool) -> None:
+    """It owes no answer once the machine is unlocked, or reset and unlocked."""
+    session.send(b"$TPW\n", 0.2)
+    session.engine.set("estop_n", 0)
+    session.run(0.3)
+    session.engine.set("estop_n", 1)
+    assert session.status()["state"] == "Alarm" and "ALARM:3" in session.log
+    if reset:
+        session.send(b"\x18", 0.5)
+    answered = len(session.answers)
+    assert session.line("$X").endswith("ok")
+    session.run(0.5)
+    assert session.line("G0 X-1") == "ok"
+    session.rest()
+    assert session.answers[answered:] == ["ok"] * 2 and session.fields("MPos")[0] == -1
+
+
 def test_a_probe_within_the_travel(session: GrblConsole) -> None:
     """With soft limits the distance ends there: no contact is an error, no alarm."""
     for line in ("$20=1", "$342=100", "$132=20"):
