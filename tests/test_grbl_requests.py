@@ -151,6 +151,18 @@ def test_every_line_that_is_lost_is_answered(session: GrblConsole) -> None:
     assert session.fields("MPos")[:2] == [0, -1]
 
 
+def test_lost_lines_end_with_a_reset(session: GrblConsole) -> None:
+    """They owe no answer behind the greeting, and refuse no line that comes then."""
+    session.send(b"M0\n", 0.1)
+    session.grbl.type(b"\n" * (session.grbl.room - 3) + b"G0 X-1\nG0 X-2\nG0 X-")
+    session.send(b"\x18", 0.5)
+    answered = len(session.answers)
+    for line in (b"G0 Y-1\n", b"G0 Y-2\n"):
+        session.grbl.type(line)
+        session.finish()
+    assert session.answers[answered:] == ["ok"] * 2 and session.fields("MPos")[:2] == [0, -2]
+
+
 def test_a_byte_that_the_serial_line_lost_refuses_its_line(session: GrblConsole) -> None:
     """Also in a comment, whose end it may have been."""
     assert session.line("(a\0 G0 X1") == "error:11"

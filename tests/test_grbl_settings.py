@@ -111,6 +111,21 @@ def test_what_outlasts_a_loss_of_power(session: Session, file: Path) -> None:
     again.off()
 
 
+def test_every_setting_outlasts_a_loss_of_power(session: Session, file: Path) -> None:
+    """Also one that another one must permit: soft limits need homing, which the defaults do not have."""
+    assert "$22=0" in session.line("$$") and session.line("$22=1") == session.line("$20=1") == "ok"
+    changed = 0
+    for line in session.line("$$").splitlines()[:-1]:
+        name, _, value = line.partition("=")
+        other = f"{float(value) * 0.9:.3f}" if "." in value else str(1 - int(value)) if value in "01" else ""
+        changed += bool(other) and name not in ("$20", "$22") and session.line(f"{name}={other}") == "ok"
+    shown = session.line("$$")
+    assert changed > 25 and {"$20=1", "$22=1"} < set(shown.splitlines())
+    again = Session(file)
+    assert "error" not in again.greeting and again.line("$$") == shown
+    again.off()
+
+
 def test_two_bad_copies_are_error_7(session: Session, file: Path) -> None:
     """Defaults, and the settings are shown; one bad copy is no loss."""
     session.line("$110=6000")
