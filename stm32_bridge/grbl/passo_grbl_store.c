@@ -14,11 +14,10 @@ static void set_defaults(struct passo_grbl *grbl)
 static bool is_possible(struct passo_grbl *grbl)
 {
 	const struct passo_grbl_counts counts = passo_grbl_counts(grbl);
-	struct passo_grbl_settings trial;
+	struct passo_grbl_settings trial; /* of those before, only homing permits others */
 	unsigned number;
 	bool whole;
 
-	grbl->setup->defaults(&trial);
 	trial.value[PASSO_GRBL_HOMING] = grbl->stored.settings.value[PASSO_GRBL_HOMING];
 	for (unsigned i = 0; (number = passo_grbl_setting_number(i, counts, &whole)) != PASSO_GRBL_NO_SETTING;
 	    i++) {
