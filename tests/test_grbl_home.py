@@ -146,6 +146,21 @@ def test_a_home_that_is_stopped(session: Session, code: int, alarm: int) -> None
     assert f"ALARM:{alarm}\n" in session.take() and session.report().startswith("Alarm")
 
 
+def test_an_input_without_a_switch_is_never_active(tmp_path: Path) -> None:
+    """Whatever `$5` says: it is connected to ground."""
+    path = tmp_path / "bare.toml"
+    axes = [AXIS.format(name=name, home="low", switches='["home"]') for name in "XYZ"]
+    axes[2] = axes[2].replace('home = "low"\nswitches = ["home"]\n', "")
+    path.write_text(HEAD + "".join(axes))
+    machine = read_machine(path)
+    with machine_at("model", machine) as engine:
+        session = Session(engine, machine)
+        session.line("$X")
+        assert "|Pn:" not in session.report()
+        assert session.line("$5=1") == "ok"
+        assert "|Pn:XY|" in session.report()  # as if both were pressed
+
+
 def test_a_home_without_its_switch(tmp_path: Path) -> None:
     """The travel of the settings is too short to get there."""
     machine = machine_of(tmp_path)
