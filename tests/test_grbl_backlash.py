@@ -20,7 +20,7 @@ from passo.make_command import settings_lines
 from passo.part import core_of, play_part, read_part
 from passo.run import open_engine
 
-from tests.helpers.grbl_console import GrblConsole
+from tests.helpers.grbl_console import GrblConsole, watch
 from tests.helpers.random_plans import SEED
 from tests.test_grbl_home import AXIS
 
@@ -419,3 +419,19 @@ def test_another_motion_at_the_limit_leaves_the_axis_there(opens: Opens, tmp_pat
     assert session.line("G1 X-6") == "ok"
     session.settle()
     assert session.zeros() == zeros and session.driver.tracker(0).position == -PLAY
+
+
+@pytest.mark.parametrize("line", ["M3 S500", "M64 P0", "M66 P1", "M5\nM3 S500"])
+def test_what_begins_at_rest_waits_for_a_take_up(opens: Opens, tmp_path: Path, line: str) -> None:
+    """It is not lost behind the last step of the path, while a motor takes up its backlash slowly."""
+    head = "spindle_maximum = 1000\n" + HEAD
+    session = opens(machine_of(tmp_path, BACKLASH.format(take_up=SLOW), head))
+    levels = watch(session.engine, "outputs")
+    session.line("$X")
+    session.line("G0 X1")
+    session.rest()
+    answered = len(session.answers)
+    session.send(f"G0 X0.95\n{line}\nG0 Y1\n".encode(), 1)
+    session.finish()
+    assert set(session.answers[answered:]) == {"ok"} and session.fields("MPos")[:2] == [0.95, 1]
+    assert bool(levels()) == ("M66" not in line)

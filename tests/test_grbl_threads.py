@@ -23,6 +23,7 @@ from tests.helpers.grbl_console import GrblConsole
 from tests.test_rigid_tapping import SMALL
 
 FREE, SPIN, PASS = 0, 2, 3  # enum passo_player_step
+SPINDLE, REVERSE = 1, 2  # levels
 TAP, PLACE = "G33.1 Z0 K.5", 1.5
 
 
@@ -102,6 +103,10 @@ def test_a_tap(tmp_path: Path) -> None:
         session.rest()
         assert session.fields("MPos")[2] == 2 and session.grbl.answers == answers + 1
         (one,) = judge(session.played())
+        session.run(0.05)
+        outputs = np.concatenate(session.events)["outputs"] & (SPINDLE | REVERSE)
+        # backward for the way back only, although nothing follows
+        assert outputs.max() == SPINDLE | REVERSE and outputs[-1] == SPINDLE
     assert one.error <= WITHIN and one.end == one.late == 0
 
 

@@ -344,6 +344,13 @@ def check_input(session: GrblConsole) -> None:
     session.line("$X")
     says("M66 P2 L0", "0", 0)
     assert session.fields("MPos")[0] == 0
+    # what changes between a wait that a reset ended and the next one is no edge of that
+    for edge, level in ((1, 1), (2, 0)):
+        session.send(b"M66 P2 L%d Q9\n" % edge, 0.1)
+        session.send(b"\x18", 0.1)
+        session.engine.set("home", y * level)
+        session.line("$X")
+        says(f"M66 P2 L{edge} Q0.3", "-1", 0.3)
 
 
 @pytest.mark.parametrize("line", ["G1 X-10", "G0 X-10.00001", "G4 P0.01", "G1 X-10.006\nG1 X-10"])
