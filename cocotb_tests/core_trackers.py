@@ -233,7 +233,7 @@ def stops_with_the_channel(core: Core) -> None:
         assert not core.steps(0, stopped + 100)
         assert channel.state().quiet
         off = abs(channel.positions()[0] - trackers.positions()[0])
-        assert off <= (7 if hard else 1)
+        assert off <= (7 if hard else 0)
         channel.link.write(channel.base + r.CHANNEL_COMMAND, 1 << r.CHANNEL_COMMAND_ZERO_LSB)
         core.run(2000)
         assert channel.positions()[0] == trackers.positions()[0] == 0

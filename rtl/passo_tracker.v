@@ -20,9 +20,10 @@
 // `halt` and `zero` clear `enabled`; `zero` and a reset set the positions to 0.
 //
 // All numbers are in a memory of 16-bit words that is read twice a clock and written once: two words are added, or
-// subtracted, with a carry from word to word. Positions are Q32.32, t is UQ32.32, the others are UQ0.32 steps. What
-// the host writes stands in a memory of its own and is copied: the target in each turn, speed and acceleration in
-// every other one; but not in a turn in which it is written while it is read.
+// subtracted, with a carry from word to word. Positions are Q32.32 and half a step, so that their whole part is that of
+// the nearest step; t is UQ32.32, the others are UQ0.32 steps. What the host writes is in a memory of its own and is
+// copied: the target in each turn, speed and acceleration in every other one; but not in a turn in which it is written
+// while it is read.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -88,8 +89,8 @@ module passo_tracker #(
   wire keeps = ~speeds & (rests | (~(brakes | near) & slow));
   wire lands = stays_zero & ~(brakes | behind) & (rests ? close & slower : near);
 
-  // ---- clearing: v and t after a hard stop, all numbers after a reset or `zero`, and v, which is 0, after a write of an
-  // acceleration: until an odd tick is over that began after it, in which every axis has copied its acceleration ----
+  // ---- clearing: v and t after a hard stop, all numbers after a reset or `zero`, and v, which is 0, after a write of
+  // an acceleration: until an odd tick is over that began after it, in which every axis has copied its own ----
   reg clearing;
   reg clears_again;  // beyond the next odd tick
   reg clears_position;
@@ -98,7 +99,7 @@ module passo_tracker #(
 
   // ---- what this slot adds ----
   wire [3:0] first, second, result;
-  wire subtracts, is_first, no_first, no_second;
+  wire subtracts, is_first, no_first, no_second, half;
 
   passo_tracker_program u_program (
     .line            (line),
@@ -116,6 +117,7 @@ module passo_tracker #(
     .is_first        (is_first),
     .no_first        (no_first),
     .no_second       (no_second),
+    .half            (half),
     .result          (result)
   );
 
@@ -142,6 +144,7 @@ module passo_tracker #(
   reg         begins_q;  // lowest word
   reg         no_first_q;
   reg         no_second_q;
+  reg         half_q;
   reg  [15:0] first_term;
   reg  [15:0] second_term;
   reg         carry;
@@ -197,7 +200,6 @@ module passo_tracker #(
   // Whether the sums since the lowest word are all 0: four bits at a time, put together one clock later.
   reg [3:0] same;
   reg all_same;
-  reg crosses;  // the upper bit of the position below 1 changes: a step is due where that or bit 0 does
   integer k;
 
   always @(posedge clk) begin
@@ -206,9 +208,10 @@ module passo_tracker #(
     begins_q     <= is_first;
     no_first_q   <= no_first;
     no_second_q  <= no_second;
+    half_q       <= half;
     copies_q     <= copies & ~(word ? writes_lower : writes_upper);
-    first_term   <= (copies_q ? setting_word : first_word) & ~{16{no_first_q}};
-    second_term  <= (second_word & ~{16{no_second_q}}) ^ {16{subtracts_q}};
+    first_term   <= no_first_q ? {half_q, 15'd0} : copies_q ? setting_word : first_word;
+    second_term  <= (no_second_q ? {half_q, 15'd0} : second_word) ^ {16{subtracts_q}};
     carry        <= begins_q ? subtracts_q : sum[16];
     writes_lower <= writes_upper & ~rst;
     writes_upper <= bus_write & (in_targets | in_axis) & ~rst;
@@ -225,7 +228,6 @@ module passo_tracker #(
     if (line == 4'd6) behind <= sum[15];
     if (line == 4'd8) near <= sum[15];
     if (line == 4'd10) close <= sum[15];
-    crosses <= first_term[15] ^ sum[15];
     for (k = 0; k < 4; k = k + 1) same[k] <= sum[k*4+:4] == 4'd0;
     all_same <= &same & (all_same | (slot[0] & ~slot[2]));  // begins in slots 11 and 25
     if (slot == 5'd15) there <= all_same & ~cleared_position;
@@ -283,7 +285,7 @@ module passo_tracker #(
       cleared          <= clearing;
       cleared_position <= clears_position;
     end
-    made <= turn_over & (crosses ^ second_term[0] ^ carry) & ~(clearing | cleared);
+    made <= turn_over & (second_term[0] ^ carry) & ~(clearing | cleared);
     for (j = 0; j < AXES; j = j + 1) begin
       if (turn_over && written == j[AXIS_BITS-1:0]) begin
         signs[j]     <= negative ^ (rests & behind & ~brakes);

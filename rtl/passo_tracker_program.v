@@ -31,10 +31,12 @@ module passo_tracker_program (
   output reg        is_first,          // the lowest word
   output reg        no_first,          // take 0
   output reg        no_second,
+  output wire       half,              // instead of 0, 2^-1 step
   output reg  [3:0] result
 );
 
-  // Numbers of an axis, by pairs of words. Of 64 bits are d, z, t and the position; the lower pair of the target is 0.
+  // Numbers of an axis, by pairs of words. Of 64 bits are d, z, t and the position; the lower pair of the target is
+  // that of 1/2.
   localparam [2:0] LIMIT = 3'd2;  // at 2 the speed, at 10 the acceleration
   localparam [2:0] VELOCITY = 3'd3;  // at 3 of even ticks, at 11 of odd ones; before the new one its place has w
   localparam [3:0] DISTANCE = 4'd4;  // d
@@ -47,6 +49,8 @@ module passo_tracker_program (
   wire [3:0] from = {
     ~negative, POSITION[2:1], line[0]
   };  // d: TARGET differs from the upper pair in this bit alone
+
+  assign half = word & ~line[0] & line[2] & (line[3] == line[1]);  // in 4 of a target, in 14 of a position
 
   always @* begin
     first     = line;

@@ -324,6 +324,24 @@ def test_axes_without_lines() -> None:
     assert 700 < stopped[3] < 5000 and wire.counted()[1] == stopped
 
 
+@pytest.mark.parametrize("clocks", range(50_000, 62_000, 1000))
+def test_a_tracker_that_rests_between_two_steps(clocks: int) -> None:
+    """Its position is that of the nearest one, as many as it has made: the path beside it is exact."""
+    driver, wire = machine()
+    driver.call("configure_tracker", track())
+    driver.call("track_to", track(), 5000)
+    wire.run(clocks)
+    driver.call("untrack", 0)
+    while reading(driver).moves:
+        wire.run(1000)
+    wire.run(wire.clock_hz // 1000)
+    made = wire.counted()[1][0]
+    assert 0 < made < 5000 and reading(driver).position == made
+    driver.call("move_by_speed", by_speed([40]))
+    finish(driver, wire)
+    assert driver.positions()[0] == 40 and wire.counted()[1][0] == made + 40
+
+
 def test_targets_of_a_table() -> None:
     """As exact fractions say, halves up; beyond its ends those of the ends, at any position."""
     rng = random.Random(f"table {SEED}")

@@ -18,7 +18,7 @@ struct passo_tracker_settings {
 struct passo_tracker_axis {
 	struct passo_tracker_settings host;
 	uint32_t target, speed, acceleration;
-	uint64_t position; /* Q32.32 */
+	uint64_t position; /* Q32.32, and half a step */
 	uint64_t stopping; /* t, UQ32.32 */
 	uint32_t velocity; /* v */
 	uint32_t shown;    /* position that a read sees */

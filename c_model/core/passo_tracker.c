@@ -19,6 +19,14 @@ enum {
 	SLOT_LAST = 31
 };
 
+/* Positions are Q32.32 and half a step: their whole part is that of the nearest step. */
+static const uint64_t HALF = UINT64_C(1) << 31;
+
+static uint64_t place_of(uint32_t target)
+{
+	return (uint64_t)target << 32 | HALF;
+}
+
 static bool sign_of(uint64_t value)
 {
 	return value >> 63 != 0u;
@@ -104,7 +112,7 @@ static struct passo_tracker_turn begin_turn(
 static void compare(struct passo_tracker_turn *now, const struct passo_tracker_axis *axis)
 {
 	const bool negative = now->negative;
-	const uint64_t target = (uint64_t)axis->target << 32;
+	const uint64_t target = place_of(axis->target);
 	uint64_t y = target - axis->position - (negative ? 1u : 0u);
 
 	now->acceleration = now->reduction = axis->acceleration;
@@ -119,19 +127,13 @@ static void compare(struct passo_tracker_turn *now, const struct passo_tracker_a
 	now->close = sign_of(y) != negative;
 }
 
-/* Steps are made where the position passes the middle between two. */
-static bool nearest_is_odd(uint64_t position)
-{
-	return ((position >> 32 ^ position >> 31) & 1u) != 0u;
-}
-
 static void move(struct passo_trackers *trackers, struct passo_tracker_axis *axis)
 {
 	const struct passo_tracker_turn *now = &trackers->now;
 	const bool speeds = !now->brakes && !now->close && now->slower;
 	const bool keeps = !speeds && (now->rests || (!now->brakes && !now->near && now->slow));
 	const uint32_t old = axis->velocity;
-	const bool was_odd = nearest_is_odd(axis->position);
+	const uint64_t before = axis->position;
 	uint32_t velocity = speeds ? old + now->acceleration : keeps ? old : old - now->reduction;
 
 	if (now->cleared)
@@ -145,14 +147,13 @@ static void move(struct passo_trackers *trackers, struct passo_tracker_axis *axi
 	else if (!keeps)
 		axis->stopping -= old;
 	if (now->cleared_position)
-		axis->position = 0;
+		axis->position = HALF;
 	else if (lands)
-		axis->position = (uint64_t)axis->target << 32;
+		axis->position = place_of(axis->target);
 	else
 		axis->position += now->negative ? 0u - (uint64_t)velocity : velocity;
 	axis->velocity = velocity;
-	axis->step_made =
-	    nearest_is_odd(axis->position) != was_odd && trackers->clears == 0u && !now->cleared;
+	axis->step_made = axis->position >> 32 != before >> 32 && trackers->clears == 0u && !now->cleared;
 	axis->negative = now->negative != (now->rests && now->behind && !now->brakes);
 	axis->at_target = now->there;
 	trackers->step_down = axis->step_made && now->negative;
@@ -282,10 +283,10 @@ uint32_t passo_trackers_value(const struct passo_channel *channel, uint8_t addre
 static bool axis_rests(const struct passo_trackers *trackers, unsigned i)
 {
 	const struct passo_tracker_axis *axis = &trackers->axis[i];
-	const bool there = axis->position == (uint64_t)axis->target << 32 && !trackers->clears_position;
+	const bool there = axis->position == place_of(axis->target) && !trackers->clears_position;
 
 	return axis->velocity == 0u && (trackers->clears == 0u || axis->stopping == 0u)
-	    && (!trackers->clears_position || axis->position == 0u)
+	    && (!trackers->clears_position || axis->position == HALF)
 	    && axis->target == axis->host.target[trackers->join[i].went_down ? 1 : 0]
 	    && axis->speed == axis->host.speed && axis->acceleration == axis->host.acceleration
 	    && axis->at_target == there && (there || !axis->enabled);

@@ -186,7 +186,7 @@ class Host(Motions):
             }
             assert hands, f"axis {axis}: step {made.get(tick, 0)} in tick {tick}"
             assert len(hands) < OPTIONS
-            looks[tick] = {hand.position // STEP for hand in hands}
+            looks[tick] = {nearest(hand.position) for hand in hands}
         done = {hand for hand in hands if hand.applied == len(writes)}
         assert done, f"axis {axis}: a write acts"
         self.hands[axis] = {hand._replace(applied=0) for hand in done}
@@ -206,7 +206,7 @@ class Host(Motions):
 
     def position(self, axis: int) -> int:
         """In whole steps, at rest."""
-        (position,) = {hand.position // STEP for hand in self.hands[axis]}
+        (position,) = {nearest(hand.position) for hand in self.hands[axis]}
         return position
 
     def check_rest(self, enabled: int) -> None:
@@ -218,7 +218,7 @@ class Host(Motions):
             assert hands, "at rest"
             at = {hand.position == hand.target * STEP for hand in hands}
             assert bool(state.at_target >> axis & 1) in at, f"at the target: {state}"
-            assert read[axis] in {hand.position // STEP for hand in hands}, "TRACKER_POSITION"
+            assert read[axis] in {nearest(hand.position) for hand in hands}, "TRACKER_POSITION"
 
     def landed(self) -> None:
         """All are known to rest at their targets."""
