@@ -112,6 +112,7 @@ module passo_motion (
   wire drains_next = (settled & ~finished) | (drains & ~line_ended);
   wire settled_next = settles & settling[2] & ~settled;
   wire dry = ramp_dry & ~line_endless;
+  wire synced_next = armed & known & (sync_edge | synced);
   wire too_far = following_hard & occupied;
   wire lags = following_soft & occupied;
   wire abort = command_abort | estop | input_hard | too_far;
@@ -166,11 +167,11 @@ module passo_motion (
   end
 
   always @(posedge clk) begin
-    synced        <= armed && known && (sync_edge || synced);
-    begin_profile <= armed && known && (sync_edge || synced || !wait_sync) && may_begin && !begin_profile && !stop_now;
-    startable     <= idle && run && line_valid && ramp_valid && !startable && !stop_due && !hold;
-    stop_due      <= stop_wanted && !stopped;
-    cause_due     <= cause_wanted;
+    synced <= synced_next;
+    begin_profile <= armed && known && (synced_next || !wait_sync) && may_begin && !begin_profile && !stop_now;
+    startable <= idle && run && line_valid && ramp_valid && !startable && !stop_due && !hold;
+    stop_due <= stop_wanted && !stopped;
+    cause_due <= cause_wanted;
     if (count != START_LAST) count <= count + 3'd1;
     if (!runs) count <= 3'd0;
     settling      <= settles ? {settling[1:0], 1'b1} : 3'd0;

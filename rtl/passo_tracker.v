@@ -198,9 +198,9 @@ module passo_tracker #(
 
   // ---- what is found in the sums ----
   // Whether the sums since the lowest word are all 0: four bits at a time, put together one clock later.
-  reg [3:0] same;
-  reg all_same;
-  integer k;
+  reg     [3:0] same;
+  reg           all_same;
+  integer       k;
 
   always @(posedge clk) begin
     slot         <= slot + 5'd1;

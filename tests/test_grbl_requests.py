@@ -101,7 +101,7 @@ def test_every_jog_is_answered(session: GrblConsole, code: bytes) -> None:
 
 @pytest.mark.parametrize("lines", [1, 3])
 def test_a_jog_that_is_canceled_before_it_begins(session: GrblConsole, lines: int) -> None:
-    """Where both come at once to a machine at rest: it is answered, and nothing moves."""
+    """Where both come together to a machine at rest: it is answered, and nothing moves."""
     answered = len(session.answers)
     session.grbl.type(b"$J=G91 X-5 F6000\n" * lines + b"\x85")
     session.finish()

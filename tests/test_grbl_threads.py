@@ -105,7 +105,7 @@ def test_a_tap(tmp_path: Path) -> None:
         (one,) = judge(session.played())
         session.run(0.05)
         outputs = np.concatenate(session.events)["outputs"] & (SPINDLE | REVERSE)
-        # backward for the way back only, although nothing follows
+        # backward only from the target on, although nothing follows
         assert outputs.max() == SPINDLE | REVERSE and outputs[-1] == SPINDLE
     assert one.error <= WITHIN and one.end == one.late == 0
 

@@ -121,7 +121,7 @@ static bool motion_settled(const struct passo_channel *channel, const struct pas
 	case PASSO_STATE_ARMED:
 		return !motion->running && !motion->begin_profile
 		    && (waits || passo_encoders_await_index(channel)
-			|| (inputs->wait_sync && !motion->synced));
+		        || (inputs->wait_sync && !motion->synced));
 	case PASSO_STATE_STOPPED:
 		return !motion->running;
 	case PASSO_STATE_RUN:

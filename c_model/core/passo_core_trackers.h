@@ -47,7 +47,8 @@ struct passo_trackers {
 	struct passo_tracker_join join[PASSO_AXES_MAX];
 	uint8_t slot, turn; /* clock of a turn, and whose it is */
 	bool odd;           /* tick */
-	uint8_t clears;     /* 0: v and t are used; 1: from the next tick on; 2: not before the one after an odd one */
+	uint8_t clears; /* 0: v and t are used; 1: from the next tick on; 2: not before the one after an odd
+	                   one */
 	bool clears_position;
 	bool step_down;
 	bool busy;

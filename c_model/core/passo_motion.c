@@ -53,12 +53,11 @@ void passo_motion_wires(const struct passo_channel *channel, const struct passo_
 	wires->tracking = channel->trackers.busy;
 	wires->startable = state == PASSO_STATE_IDLE && inputs->run && channel->line_queue.next_valid
 	                && wires->ramp_valid && !wires->hold && !wires->requests.wait
-	                && !(motion->stopping && wires->tracking)
-	                && passo_outputs_quiet(&channel->outputs);
+	                && !(motion->stopping && wires->tracking) && passo_outputs_quiet(&channel->outputs);
 	wires->prepare = state == PASSO_STATE_IDLE && motion->startable;
 	passo_encoders_wires(channel, wires);
-	wires->synced_next = state == PASSO_STATE_ARMED && !wires->requests.wait
-	                  && (inputs->sync_edge || motion->synced);
+	wires->synced_next =
+	    state == PASSO_STATE_ARMED && !wires->requests.wait && (inputs->sync_edge || motion->synced);
 	wires->begins_next = state == PASSO_STATE_ARMED && !wires->requests.wait
 	                  && (wires->synced_next || !inputs->wait_sync) && wires->may_begin;
 	wires->begin_profile = motion->begin_profile;
