@@ -185,3 +185,10 @@ def ffi() -> Any:
 def planner() -> Any:
     """Its functions."""
     return _library()
+
+
+def unopened(name: str) -> Any:
+    """Memory for a structure that its open function is to fill: of no known content."""
+    made = _library().new(f"struct {name}")
+    ctypes.memset(ctypes.addressof(made), 0xA5, ctypes.sizeof(made))
+    return made
