@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The page to try Passo expands programs as the command does."""
 
+import ast
 import json
 import random
 import shutil
@@ -226,3 +227,16 @@ def test_without_pyodide(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     monkeypatch.setattr(web_python, "PYODIDE", tmp_path / "none")
     assert web_python.write_python(tmp_path) is None
     assert not (tmp_path / web_python.NAME).exists()
+
+
+def test_the_page_has_all_that_its_modules_import_of_native() -> None:
+    """It has a passo.native of its own."""
+    folder = paths.sim / "passo"
+    own = ast.parse((folder / "page" / "native.py").read_text())
+    has = {node.name for node in own.body if isinstance(node, ast.FunctionDef)}
+    wanted: set[str] = set()
+    for source in [*(folder / name for name in web_python.MODULES), *(folder / "expand").glob("*.py")]:
+        for node in ast.walk(ast.parse(source.read_text())):
+            if isinstance(node, ast.ImportFrom) and node.module == "passo.native":
+                wanted |= {name.name for name in node.names}
+    assert {"ffi", "planner"} <= wanted <= has
