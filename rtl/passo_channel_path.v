@@ -149,7 +149,7 @@ module passo_channel_path #(
     .run             (run),
     .wait_sync       (wait_sync),
     .sync_edge       (sync_edge),
-    .hold            (hold | wait_known | (stopping & tracking) | ~outputs_quiet),
+    .hold            (hold | (stopping & tracking) | ~outputs_quiet),
     .command_stop    (command_stop),
     .command_abort   (command_abort),
     .command_clear   (command_clear),

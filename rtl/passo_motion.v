@@ -5,9 +5,9 @@
 //
 // Promise: a motion is prepared when `run` is set and a line and a ramp are queued, but not while `hold`. From ARMED
 // it starts when it `may_begin`, immediately or, while wait_sync is set, on a sync edge, or later if it may not begin
-// then; so ARMED channels start together when one write clears their wait_sync. An edge while the inputs are not
-// `known` is ignored. It ends when its profile has ended and its line has ended (or is
-// ENDLESS); missing substeps of the line are drained and counted. A stop is soft (the rate goes to 0 first) for
+// then; so ARMED channels start together when one write clears their wait_sync. While the inputs are not `known` it is
+// neither prepared nor started, and a sync edge is ignored. It ends when its profile has ended and its line has ended
+// (or is ENDLESS); missing substeps of the line are drained and counted. A stop is soft (the rate goes to 0 first) for
 // COMMAND.STOP, RAMP_UNDERRUN and soft requests of inputs and encoders, else the channel is STOPPED two clocks later.
 // Encoders only stop a motion. On the same clock e-stop has priority, then ABORT, STEP_OVERRUN, hard requests of
 // inputs, those of encoders, LINE_UNDERRUN, a soft stop (STOP, inputs, RAMP_UNDERRUN, encoders); a stop has priority
@@ -39,7 +39,7 @@ module passo_motion (
   input  wire [ 3:0] input_soft_cause,
   // encoders
   input  wire        may_begin,         // an ARMED motion need not wait for an index
-  input  wire        known,             // nor for its inputs
+  input  wire        known,             // no motion need wait for its inputs
   input  wire        following_soft,    // an axis is too far from its encoder: requests to stop
   input  wire        following_hard,
   // trackers
@@ -113,6 +113,7 @@ module passo_motion (
   wire settled_next = settles & settling[2] & ~settled;
   wire dry = ramp_dry & ~line_endless;
   wire synced_next = armed & known & (sync_edge | synced);
+  wire starts = armed & known & may_begin & (synced_next | ~wait_sync);
   wire too_far = following_hard & occupied;
   wire lags = following_soft & occupied;
   wire abort = command_abort | estop | input_hard | too_far;
@@ -167,11 +168,11 @@ module passo_motion (
   end
 
   always @(posedge clk) begin
-    synced <= synced_next;
-    begin_profile <= armed && known && (synced_next || !wait_sync) && may_begin && !begin_profile && !stop_now;
-    startable <= idle && run && line_valid && ramp_valid && !startable && !stop_due && !hold;
-    stop_due <= stop_wanted && !stopped;
-    cause_due <= cause_wanted;
+    synced        <= synced_next;
+    begin_profile <= starts && !begin_profile && !stop_now;
+    startable     <= idle && run && line_valid && ramp_valid && known && !startable && !stop_due && !hold;
+    stop_due      <= stop_wanted && !stopped;
+    cause_due     <= cause_wanted;
     if (count != START_LAST) count <= count + 3'd1;
     if (!runs) count <= 3'd0;
     settling      <= settles ? {settling[1:0], 1'b1} : 3'd0;

@@ -93,7 +93,7 @@ always @(posedge clk)
     if ($past(begin_profile) && !$past(f_stop_hard, 2) && !$past(stopping, 2))
       begins_when_told : assert (state == STATE_RUN || state == STATE_SETTLE);
     if (drop) drops_only_after_abort : assert (f_abort || $past(f_abort) || $past(f_abort, 2));
-    if ($past(hold)) none_prepared_in_hold : assert (!prepare);
+    if ($past(hold || !known)) none_prepared_in_hold : assert (!prepare);
     if ($past(hold) && $past(hold && f_begun, 2) && !$past(occupied)) none_begins_in_hold : assert (!occupied);
     if (drain && !$past(drain)) drains_after_settling : assert (f_uncounted >= 3'd5);
     if (prepare) prepared_only_with_both : assert ($past(run && line_valid && ramp_valid && state == STATE_IDLE));
