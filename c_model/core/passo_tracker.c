@@ -72,7 +72,7 @@ static uint32_t *written_word(struct passo_trackers *trackers, unsigned axes, ui
 		return &trackers->axis[number].host.target[0];
 	if (address - number == PASSO_CHANNEL_TRACKER_TARGET_DOWN_BASE && number < axes)
 		return &trackers->axis[number].host.target[1];
-	if (address < PASSO_CHANNEL_AXIS_BASE || axis >= axes)
+	if (in_axes >= axes * PASSO_CHANNEL_AXIS_STRIDE)
 		return NULL;
 	switch (in_axes % PASSO_CHANNEL_AXIS_STRIDE) {
 	case PASSO_AXIS_TRACKER_SPEED:
@@ -88,7 +88,7 @@ static bool is_acceleration(unsigned axes, uint8_t address)
 {
 	const unsigned in_axes = (unsigned)address - PASSO_CHANNEL_AXIS_BASE;
 
-	return address >= PASSO_CHANNEL_AXIS_BASE && in_axes / PASSO_CHANNEL_AXIS_STRIDE < axes
+	return in_axes < axes * PASSO_CHANNEL_AXIS_STRIDE
 	    && in_axes % PASSO_CHANNEL_AXIS_STRIDE == PASSO_AXIS_TRACKER_ACCELERATION;
 }
 
