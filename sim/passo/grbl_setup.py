@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Machine description of the grbl console, and the file with its settings."""
 
-import errno
 import math
 import os
 from collections.abc import Callable, Iterator
@@ -18,7 +17,7 @@ from passo.failure import BadInputError
 from passo.machine_file import ENCODER_FILTER, MachineFile, Spindle, check_pins
 from passo.moves import PinTiming
 from passo.native import ffi, planner
-from passo.output import write_bytes
+from passo.output import check_access, write_bytes
 from passo.rig import RATIO_ONE, gap_of, interval_of
 from passo.run import open_engine, parameters_for
 from passo.values import BadValueError
@@ -295,8 +294,7 @@ class SettingsFile:
                 write_bytes(path, b"\xff" * PAGE * PAGES)
             if not path.is_file() or path.stat().st_size != PAGE * PAGES:
                 raise BadInputError(f"{path}: not a settings file: it must have {PAGE * PAGES} bytes")
-            if not os.access(path, os.R_OK | os.W_OK):
-                raise BadInputError(f"{path}: {os.strerror(errno.EACCES)}")
+            check_access(path, os.R_OK | os.W_OK)
         except OSError as error:
             raise BadInputError(f"{path}: {error.strerror}") from None
         kinds = (

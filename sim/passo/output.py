@@ -34,7 +34,7 @@ def check_file(path: Path, option: str, makes: bool = False) -> None:
         if path.is_dir():
             raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
         if path.exists() and not path.is_file():
-            _check_access(path)
+            check_access(path)
         else:
             _check_folder(path.resolve().parent, makes)
 
@@ -60,11 +60,12 @@ def _check_folder(place: Path, makes: bool) -> None:
     place.stat()  # says if it is missing
     if not place.is_dir():
         raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR))
-    _check_access(place)
+    check_access(place)
 
 
-def _check_access(place: Path) -> None:
-    if not os.access(place, os.W_OK):
+def check_access(place: Path, mode: int = os.W_OK) -> None:
+    """Raises PermissionError."""
+    if not os.access(place, mode):
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
 
 
