@@ -233,6 +233,8 @@ def test_a_full_disk_is_a_sentence(
     command = [word.replace("OUT", str(out)) for word in WRITERS[name]]
     good = 1 if name == "campaign" else 0  # which has a failure to write down
     copy = shutil.copyfileobj
+    out.mkdir()
+    assert main(command) == good  # what it needs is built
     if name == "waves":  # which are recorded in memory, that is limited as well
         monkeypatch.setattr("passo.waves.shutil.copyfileobj", in_part)
     for limit in (NO_LIMIT,) if name == "waves" else LIMITS:
