@@ -47,7 +47,8 @@ enum passo_error passo_driver_look_at_rest(struct passo *passo);
 enum passo_error passo_driver_require_rest(struct passo *passo);
 /* Reads the positions of the core that are due to the path, without the offsets. */
 enum passo_error passo_driver_positions(struct passo *passo, int32_t *positions, bool once);
-/* Leaves the steps of the path of positions of the core. */
+/* Leaves the steps of the path of positions of the core; while a zero is due, those of the trackers are the
+ * places that they are counted from. */
 #ifdef PASSO_WITHOUT_TRACKERS
 static inline enum passo_error passo_driver_take_off_trackers(
     struct passo *passo, uint32_t *positions, bool once)
