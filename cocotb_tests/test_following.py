@@ -4,6 +4,7 @@
 from fractions import Fraction
 
 import cocotb
+import pytest
 from cocotb.handle import HierarchyObject
 
 from cocotb_tests.helpers.bench import patience, rng
@@ -21,6 +22,7 @@ OUTPUTS = {
 }
 
 
+@pytest.mark.sample(1)
 def test_following(simulator: str) -> None:
     run(__name__, "passo_following", simulator=simulator)
 

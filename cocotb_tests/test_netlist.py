@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The synthesized core: an iCE40 netlist instead of rtl/, compared pulse for pulse with the C model.
 
-The tests are those of the whole core. `make test` runs one of the modules below, `make netlist` all of them.
+The tests are those of the whole core: `make test-all` runs one of the modules below, `make netlist` all.
 """
 
 import importlib.util

@@ -4,6 +4,7 @@
 from fractions import Fraction
 
 import cocotb
+import pytest
 from cocotb.handle import HierarchyObject
 
 from cocotb_tests.helpers.bench import patience, rng
@@ -17,6 +18,7 @@ FULL = 65535
 SPEEDS = ((100, 100), (100, 5), (5, 100), (50, 50), (37, 81), (140, 100), (140, 60))  # % of velocity and rate
 
 
+@pytest.mark.sample(1)
 def test_outputs(simulator: str) -> None:
     run(__name__, "passo_outputs", {"AXES": AXES, "RASTER": 1, "COMPARE": 1}, simulator)
 

@@ -4,6 +4,7 @@
 from collections import deque
 
 import cocotb
+import pytest
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import ReadOnly
 from passo import registers as r
@@ -17,6 +18,7 @@ DEPTH_LOG2 = 2
 DEPTH = 1 << DEPTH_LOG2
 
 
+@pytest.mark.sample(1)
 def test_ramp_queue(simulator: str) -> None:
     run(__name__, "passo_ramp_queue", {"DEPTH_LOG2": DEPTH_LOG2}, simulator)
 

@@ -12,11 +12,6 @@ from tests.helpers.driver_wire import Wire, open_driver
 from tests.helpers.plans import planner
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Start some tests before the rest: at the end, the other workers would wait for them."""
-    items.sort(key=lambda item: item.get_closest_marker("first") is None)
-
-
 @pytest.fixture
 def c() -> Any:
     """The planner, built such that undefined behavior is fatal."""

@@ -106,6 +106,7 @@ def test_a_recipe_of_the_readme_runs(one: Shown) -> None:
         assert done.returncode == 0 and done.stdout, f"{line}: {done.stdout}{done.stderr}"
 
 
+@pytest.mark.sample(8)
 @pytest.mark.parametrize(
     "one", [one for one in COMMANDS if one.program != "make" and not begins(one)], ids=str
 )

@@ -4,6 +4,7 @@
 import subprocess
 from pathlib import Path
 
+import pytest
 from passo import random_cases
 from passo.toolchain import paths
 
@@ -15,6 +16,7 @@ FOLDERS = (paths.driver, paths.console, paths.planner, paths.protocol, paths.cor
 TERMINAL = paths.engine / "passo_terminal.c"
 
 
+@pytest.mark.sample(1)
 def test_every_line_gets_one_answer(tmp_path: Path) -> None:
     """Any input in any state of the core: one `ok` or `error:`, no undefined behavior."""
     program = sanitized.program(tmp_path / "fuzz", paths.tests / "console_fuzz.c", FOLDERS, TERMINAL)

@@ -20,6 +20,7 @@ def program() -> Path:
     return kept(paths.build / "tests" / "driver_cuts", [*files, *headers(*FOLDERS)], flags, *files)
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("part", range(PARTS))
 def test_a_wire_that_dies_anywhere(program: Path, part: int) -> None:
     """The driver's state matches the core, or the driver reports that it is unknown and can be cleared."""

@@ -73,12 +73,14 @@ def one_thread_frees() -> Iterator[None]:
     gc.enable()
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("coupling", QUICK, ids=lambda coupling: coupling.name)
 def test_model_and_rtl_are_equal(coupling: Coupling) -> None:
     result = run.prove_module(coupling.name)
     assert result.good, result.says
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("coupling", FAULTY, ids=lambda coupling: coupling.name)
 def test_fault_is_seen(coupling: Coupling) -> None:
     result = run.see_fault(coupling.name)

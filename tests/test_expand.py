@@ -68,6 +68,7 @@ def test_the_corpus_has_all_words() -> None:
         assert not GROUP.keys() - modes - set("IJK") - words, combination  # a plane has two of I J K
 
 
+@pytest.mark.sample(1)
 def test_random_programs() -> None:
     """The same motions as rs274, and the same line refused."""
     motions = refused = 0

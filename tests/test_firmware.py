@@ -78,6 +78,7 @@ def test_demonstration_tells_what_it_does(
     assert re.search(r"^\[ *0:\d\d\] triangle: 2,500 edges, all as expected$", said, re.M)
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(("clock_hz", "count"), [(HZ, 10), (SLOW_HZ, 50)])
 def test_random_moves_on_the_verilated_core(clock_hz: int, count: int, tmp_path: Path) -> None:
     """Moves of all methods: the pulses of the firmware and the Verilated core are those of PC and C model."""

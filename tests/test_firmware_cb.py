@@ -77,6 +77,7 @@ def typed(board: Machine, line: str, seconds: float = 0.2) -> str:
     return board.output[since:]
 
 
+@pytest.mark.sample(1)
 def test_it_fits_and_the_page_says_how_large_it_is(image: tuple[str, ...]) -> None:
     """Below 120 KiB; of the one with both, the deepest stack of the one fits beside the data of the other."""
     said = make_firmware(*image)

@@ -69,6 +69,7 @@ def board(elf: Path) -> Iterator[GrblBoard]:
         assert not made.faults and {cause for _, cause in made.resets} == {"power"}
 
 
+@pytest.mark.sample(1)
 def test_it_fits_and_the_page_says_how_large_it_is() -> None:
     """Code, data and stack, with the two pages of settings left free."""
     said = make_firmware("GRBL=1")
@@ -238,6 +239,7 @@ def on_the_pc(lines: list[str]) -> list[Motion]:
         return motions(np.concatenate(events), axes=engine.parameters.axes)
 
 
+@pytest.mark.sample(1)
 def test_pulses_are_those_of_the_pc(elf: Path) -> None:
     """A square and an arc on the Verilated core: every edge."""
     expected = on_the_pc(["$0=1", *PART])
@@ -425,6 +427,7 @@ switches = ["home"]
 )
 
 
+@pytest.mark.sample(1)
 def test_home(fast_elf: Path, tmp_path: Path) -> None:
     """With switches at the low ends: locked until then, and every axis is its pull-off away from its end."""
     path = tmp_path / "machine.toml"

@@ -73,6 +73,7 @@ def test_lines_of_axes_move_motors(kind: str, tmp_path: Path) -> None:
         assert "[MSG:PARAMETERS: " in small.output and "Grbl" not in small.output
 
 
+@pytest.mark.sample(1)
 def test_a_motor_that_leaves_its_encoder(tmp_path: Path) -> None:
     """It stops both motors of its axis; a core without encoders is none for this machine."""
     more = "motors = 2\nencoders = [0, 320]\nfollowing = 0.2"

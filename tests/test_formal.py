@@ -39,6 +39,7 @@ def assumed() -> dict[str, str]:
     return {name: by for names, by in rows for name in re.findall(r"`(\w+)`", names)}
 
 
+@pytest.mark.sample(6)
 @pytest.mark.parametrize("proof", QUICK, ids=lambda proof: proof.name)
 def test_promises_hold(proof):
     result = run.prove(proof)

@@ -15,6 +15,7 @@ SEED = str(random_cases.seed())
 SECONDS = str(random_cases.fuzz_seconds())
 
 
+@pytest.mark.sample(1)
 def test_no_line_breaks_the_interpreter(tmp_path: Path) -> None:
     """No undefined behavior, no partial effect, nothing that the planner cannot take."""
     folders = (paths.gcode, paths.planner, paths.protocol)

@@ -75,6 +75,7 @@ def test_reports(session: Session) -> None:
     assert {"$100=80.000", "$110=12000.000", "$122=100.000", "$12=0.002"} < set(settings)
 
 
+@pytest.mark.sample(1)
 def test_hold_and_resume(session: Session) -> None:
     """The path stops on the path, and continues to its exact end."""
     session.line("G1 X30 F6000")

@@ -67,6 +67,7 @@ def stream(sender: Cncjs) -> None:
     assert sender.position == pytest.approx(END, abs=0.01)
 
 
+@pytest.mark.sample(1)
 def test_a_job_with_a_pause(sender: Cncjs) -> None:
     """By counting characters; each line is answered once, and cncjs sees the end by itself."""
     settings = sender.last["controller:settings"][1]

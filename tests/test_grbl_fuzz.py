@@ -4,6 +4,7 @@
 import subprocess
 from pathlib import Path
 
+import pytest
 from passo import random_cases
 from passo.toolchain import paths
 
@@ -14,6 +15,7 @@ SECONDS = str(random_cases.fuzz_seconds())
 FOLDERS = (paths.grbl, paths.driver, paths.gcode, paths.planner, paths.protocol, paths.engine, paths.core)
 
 
+@pytest.mark.sample(1)
 def test_every_line_gets_one_answer(tmp_path: Path) -> None:
     """Whatever comes at whatever time: one answer per line, a reset helps, no undefined behavior."""
     program = sanitized.program(tmp_path / "fuzz", paths.tests / "grbl_fuzz.c", FOLDERS)

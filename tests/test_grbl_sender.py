@@ -107,6 +107,7 @@ def test_jobs_of_the_firmware(firmware: Sender, tmp_path: Path) -> None:
     assert firmware.grbl.cmpos == there
 
 
+@pytest.mark.sample(1)
 def test_hold_and_resume(connected: Sender) -> None:
     """In the middle of a job, which then runs to its end."""
     sender = connected

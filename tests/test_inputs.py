@@ -219,6 +219,7 @@ def play(machine: Machine, rounds: int) -> None:
         KINDS[number % len(KINDS)](machine)
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("number", range(4))
 def test_promises_hold_in_the_model(number: int) -> None:
     """Some 150 events each."""

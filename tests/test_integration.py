@@ -60,6 +60,7 @@ def litex(folder: Path) -> str:
     return run(sys.executable, FOLDER / "motion_litex.py", folder=folder)
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("template", [verilog, bus_wishbone, bus_axi_lite, vhdl, amaranth, litex])
 def test_a_template_moves(template: Callable[[Path], str], tmp_path: Path) -> None:
     top = tmp_path / "motion_top.v"

@@ -47,6 +47,7 @@ PAGE = (paths.docs / "hosts.md").read_text()
 HAL, INI = ((EXAMPLE / f"machine.{kind}").read_text() for kind in ("hal", "ini"))
 
 
+@pytest.mark.sample(1)
 def test_homing_and_arcs() -> None:
     """Three axes on their switches, a circle and arcs at 6,000 mm/min: the end is exact, without a fault."""
     found = run_linuxcnc(ARCS)

@@ -63,6 +63,7 @@ def test_unknown_definitions(arguments: tuple[str, ...], said: str) -> None:
         ("report", "ONLY=hx8k", "QUICK=1", "PARTS=1"),
         ("verify", "ONLY=formal axis", "SEED=1", "SCALE=2"),
         ("test", "PASSO_SEED=7"),
+        ("test-all", "TIMES=1"),
     ],
 )
 def test_known_variables(arguments: tuple[str, ...]) -> None:

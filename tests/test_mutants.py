@@ -131,6 +131,7 @@ def test_a_check_of_a_machine_finds_no_fault_with_the_core(check: Check, paramet
         check.play(engine, parameters, random.Random(SEED))
 
 
+@pytest.mark.sample(1)
 def test_a_promise_kills_a_mutant() -> None:
     """One of some, in modules whose proofs are quick; without a mutant these are proved."""
     mutants, _ = drawn(SAMPLE, SEED, EACH)

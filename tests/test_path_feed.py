@@ -57,6 +57,7 @@ class Fed:
         return low * (CLOCK_HZ // 1_000_000)
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("percent", [100, 40])
 def test_the_time_that_the_core_has(percent: int) -> None:
     """Of its ramps, as long as more may come: known to some milliseconds, and never more than it has."""

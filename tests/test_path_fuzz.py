@@ -4,6 +4,7 @@
 import subprocess
 from pathlib import Path
 
+import pytest
 from passo import random_cases
 from passo.toolchain import paths
 
@@ -13,6 +14,7 @@ SEED = str(random_cases.seed())
 SECONDS = str(random_cases.fuzz_seconds())
 
 
+@pytest.mark.sample(1)
 def test_no_path_breaks_the_planner(tmp_path: Path) -> None:
     """No undefined behavior, nothing that the core would refuse, no path that gets stuck."""
     folders = (paths.planner, paths.protocol)

@@ -18,6 +18,7 @@ from tests.test_path_parts import randoms
 KEPT = read_cases(path_adversary.WORST)
 
 
+@pytest.mark.sample(30)
 @pytest.mark.parametrize("name", KEPT)
 def test_a_kept_case_is_within_all_bounds(name: str) -> None:
     """Time, steps and underruns of paths that were wrong once."""

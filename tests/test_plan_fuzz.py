@@ -5,6 +5,7 @@ import re
 import subprocess
 from pathlib import Path
 
+import pytest
 from passo import random_cases
 from passo.toolchain import paths
 
@@ -14,6 +15,7 @@ SEED = str(random_cases.seed())
 SECONDS = str(random_cases.fuzz_seconds())
 
 
+@pytest.mark.sample(1)
 def test_no_argument_breaks_the_planner(tmp_path: Path) -> None:
     """No undefined behavior, no plan that the core would refuse, no error that modifies the plan."""
     folders = (paths.planner, paths.protocol)

@@ -273,6 +273,7 @@ def check_all(core: Core) -> None:
     core.check_pushing()
 
 
+@pytest.mark.sample(1)
 def test_every_register_of_the_model_answers() -> None:
     """Of the largest core, of which RUN has all bits."""
     parameters = Parameters(channels=8, axes=8, **PARTS)
@@ -280,6 +281,7 @@ def test_every_register_of_the_model_answers() -> None:
         check_all(Core(Link(engine), parameters))
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("parameters", CORES, ids=lambda p: p.name)
 def test_every_register_of_the_rtl_answers_as_in_the_model(parameters: Parameters) -> None:
     """PairEngine compares each word of each reply."""

@@ -44,6 +44,7 @@ def serve(path: Path, *options: str) -> Iterator[subprocess.Popen[str]]:
             server.kill()
 
 
+@pytest.mark.sample(1)
 def test_a_host_and_the_edges(tmp_path: Path) -> None:
     """The command ends with its host and leaves no socket; the edges are in the file."""
     path, edges = tmp_path / "core", tmp_path / "edges.npy"

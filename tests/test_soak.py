@@ -48,6 +48,7 @@ def test_no_promise_is_broken_in_the_model(program: Path) -> None:
     assert part.counts["hit"] > 0.8 * part.counts["aimed"] > 0
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("kind", "histories"), [("machine", 100), ("tries", 20), ("starts", 15), ("pokes", 5)]
 )
@@ -75,6 +76,7 @@ def test_a_step_of_a_tracker_that_is_not_made_goes_red(monkeypatch: pytest.Monke
         trackers.play(parts.TRACKER_SETS[0], SEED, 0, None, shows=False)
 
 
+@pytest.mark.sample(1)
 def test_no_promise_is_broken_through_the_driver(program: Path) -> None:
     """On wires with errors of all kinds."""
     part = parts.play_driver(program, SEED, 60, JOBS)
@@ -99,6 +101,7 @@ def test_the_soak_itself_is_sound(tmp_path: Path) -> None:
         assert counts["histories"] == 6 and not failures
 
 
+@pytest.mark.sample(1)
 def test_no_promise_is_broken_in_verilator(program: Path) -> None:
     """The core does the same as the model on every clock of a history."""
     check(parts.play_verilator(program, SEED, 30, JOBS), 30)
@@ -119,6 +122,7 @@ def test_power_keeps_its_energy_and_raster_its_substep() -> None:
     assert laser["ok"] and raster["ok"]
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     "name",
     [

@@ -75,6 +75,7 @@ def verdict_of(browser: Browser | Firefox, text: str, language: str = "G-code", 
     return browser.value(VERDICT)
 
 
+@pytest.mark.sample(1)
 def test_the_same_steps_as_the_command(opened: Browser | Firefox, tmp_path: Path) -> None:
     for steps, profile, keys, values in MOVES:
         names = [word.split("=")[0] for word in keys.split()]

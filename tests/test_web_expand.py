@@ -146,6 +146,7 @@ def test_refusals(browser: Browser, tmp_path: Path) -> None:
     assert is_same(browser, tmp_path, [*REFUSED, *UNKNOWN, *ALL]) > len(REFUSED) / 2
 
 
+@pytest.mark.sample(1)
 def test_both_browsers_play_what_they_expand(either: Browser | Firefox, tmp_path: Path) -> None:
     path = tmp_path / "plate.ngc"
     path.write_text(PLATE)

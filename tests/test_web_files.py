@@ -80,6 +80,7 @@ PLAIN = {
 }
 
 
+@pytest.mark.sample(1)
 def test_files_play_in_turn(either: Browser | Firefox, page: str, tmp_path: Path) -> None:
     """In the order of their names; each up to its M2 or M30, from where the one before ends."""
     either.open("about:blank")

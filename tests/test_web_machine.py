@@ -225,6 +225,7 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
         yield browser
 
 
+@pytest.mark.sample(1)
 def test_the_same_machines_and_messages(browser: Browser, tmp_path: Path) -> None:
     tried = texts()
     wanted = [of_command(text, tmp_path / "machine.toml") for text in tried]

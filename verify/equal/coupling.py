@@ -59,7 +59,7 @@ class Coupling:
     memory: str  # a file of memory/, for rtl/passo_memory.v
     cut: tuple[str, ...]  # modules in it that are proved on their own: their ports are outputs and inputs
     apart: bool  # each goal is proved on its own, which z3 may decide faster than all together
-    slow: bool  # takes too long for ``make test``
+    slow: bool  # takes too long for the tests
     opaque: bool  # products and quotients of unknown numbers are unknown functions
     # goals that z3 decides faster value by value of an expression: the expression, and how many values
     splits: dict[str, dict[str, Any]]

@@ -82,7 +82,7 @@ write_smt2 -stbv -wires problem.smt2
 
 @dataclass(frozen=True)
 class Proof:
-    """A proof: what sby needs, its promises, and whether it takes too long for ``make test``."""
+    """A proof: what sby needs, its promises, and whether it takes too long for the tests."""
 
     name: str
     title: str
@@ -290,7 +290,7 @@ def main() -> None:
     """Run the selected proofs, print a table, and exit with 1 unless all are good."""
     parser = argparse.ArgumentParser(prog="python -m verify.formal.run", description=__doc__.split("\n")[0])
     parser.add_argument("proof", nargs="*", help="proofs to run (default: all)")
-    parser.add_argument("--quick", action="store_true", help="only the proofs that 'make test' runs")
+    parser.add_argument("--quick", action="store_true", help="only the proofs that the tests run")
     parser.add_argument("--list", action="store_true", help="only print the properties")
     parser.add_argument("--jobs", type=int, default=JOBS, help="parallel runs (default: %(default)s)")
     arguments = parser.parse_args()
