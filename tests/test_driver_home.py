@@ -334,6 +334,48 @@ def test_a_limit_in_the_way_of_home() -> None:
     driver.wait(1)
 
 
+@pytest.mark.parametrize("task", ["home", "probe"])
+@pytest.mark.parametrize(("pin", "level", "name"), [("limit_low", 5, "LIMIT"), ("alarm", 2, "ALARM")])
+def test_a_stop_behind_the_trigger(task: str, pin: str, level: int, name: str) -> None:
+    """However short: the task ends with it, and nothing moves."""
+    switch = Switch("home", 0, -2000) if task == "home" else Switch("probe", 2, -300)
+    machine = machine_of(switch)
+    driver = driver_of(machine, limit_soft=False)
+    driver.call("configure_motion", CLOCK_HZ // 500, CLOCK_HZ // 50, 0)
+    array, touch = homes(home()), probe([0, 0, -5000, 0])
+    driver.call("home", array, 1) if task == "home" else driver.call("probe", touch)
+    while not switch.active:
+        driver.poll()
+        machine.run(CLOCK_HZ // 10_000)
+    machine.run(CLOCK_HZ // 2000)
+    machine.set(pin, level)
+    machine.run(CLOCK_HZ // 5000)
+    machine.set(pin, 0)
+    machine.run(CLOCK_HZ // 5000)
+    there = machine.positions.copy()
+    assert finish(driver) == name == driver.fault
+    assert error_of(driver, "move_by_speed", by_speed([1, 0, 0, 0])) == "STOPPED"
+    machine.run(CLOCK_HZ // 10)
+    assert machine.positions.tolist() == there.tolist() and not is_homed(driver)
+    driver.call("clear")
+    driver.call("move_by_speed", by_speed([10, 0, 10, 0]))
+    driver.wait(1)
+
+
+def test_an_alarm_of_long_ago() -> None:
+    """Its flag is still set: a limit that homes one axis is not taken for it, and forgets no other one."""
+    machine = machine_of(Switch("limit_low", 0, -500), Switch("limit_low", 1, -500))
+    driver = driver_of(machine)
+    machine.set("alarm", 15)
+    machine.run(CLOCK_HZ // 1000)
+    machine.set("alarm", 0)
+    machine.run(CLOCK_HZ // 1000)
+    driver.call("clear")
+    by_limit = {"source": TriggerSource.LIMIT_LOW, "pull_off": 50}
+    assert run_home(driver, home(**by_limit), home(axis=1, **by_limit)) == "OK"
+    assert is_homed(driver, 0) and is_homed(driver, 1)
+
+
 @pytest.mark.parametrize("seed", range(8))
 def test_random_homes(seed: int) -> None:
     """Wherever the axis is and however the switch is mounted."""

@@ -20,7 +20,7 @@ bool passo_driver_is_turning(const struct passo *passo)
 
 enum passo_error passo_driver_fault_of(enum passo_cause cause)
 {
-	static const enum passo_error faults[] = {
+	static const uint8_t faults[] = {
 	    [PASSO_CAUSE_LINE_UNDERRUN] = PASSO_ERROR_LINE_UNDERRUN,
 	    [PASSO_CAUSE_RAMP_UNDERRUN] = PASSO_ERROR_RAMP_UNDERRUN,
 	    [PASSO_CAUSE_STEP_OVERRUN] = PASSO_ERROR_STEP_OVERRUN,
@@ -32,7 +32,7 @@ enum passo_error passo_driver_fault_of(enum passo_cause cause)
 	    [PASSO_CAUSE_FOLLOWING_ERROR] = PASSO_ERROR_FOLLOWING,
 	};
 
-	return (unsigned)cause <= PASSO_CAUSE_FOLLOWING_ERROR ? faults[cause] : PASSO_OK;
+	return (unsigned)cause <= PASSO_CAUSE_FOLLOWING_ERROR ? (enum passo_error)faults[cause] : PASSO_OK;
 }
 
 void passo_driver_assume_worse(struct passo *passo, enum passo_assumed worse)

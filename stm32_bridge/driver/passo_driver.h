@@ -251,7 +251,8 @@ void passo_driver_turns(struct passo *passo, const struct passo_turning *turning
     const struct passo_plan *plan, const int32_t *aim);
 /* The snapshot shows a stop: axes that may have lost steps in it are no longer homed. */
 void passo_driver_forget_home(struct passo *passo);
-/* The same before a clear, if the cause does not show it: three frames if an axis is homed. */
+/* The same before a clear, if the cause does not show it: three frames if an axis is homed, or in a task.
+ * There LIMIT or ALARM, unless by the switch that is sought. */
 enum passo_error passo_driver_check_home(struct passo *passo);
 /* The same for all axes. */
 void passo_driver_forget_all(struct passo *passo);

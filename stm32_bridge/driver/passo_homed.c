@@ -59,23 +59,50 @@ void passo_driver_forget_home(struct passo *passo)
 		forget(passo, passo->movers);
 }
 
+/* Axes whose limits may stop a motion of the task that ends: the switches that are sought. */
+static uint8_t sought(const struct passo *passo)
+{
+	const struct passo_home *home = passo->task.home;
+
+	if (passo->task.kind != PASSO_TASK_HOME || passo->task.phase == PASSO_HOME_RELEASE
+	    || home->source == PASSO_TRIGGER_SOURCE_HOME)
+		return 0;
+#ifdef PASSO_CARTESIAN
+	return (uint8_t)(!passo->task.armed << home->axis);
+#else
+	if (passo->task.armed && !passo_driver_squares(home))
+		return 0;
+	return (uint8_t)(home->forward | 1u << home->axis);
+#endif
+}
+
 /* A hard stop during a soft stop keeps the cause of the soft stop. */
 enum passo_error passo_driver_check_home(struct passo *passo)
 {
+	const bool inside = passo->task.inside;
 	struct passo_readings now;
-	bool any = false;
+	bool any = inside;
 
 	for (unsigned i = 0; i < passo->axes; i++)
 		any |= passo->axis[i].homed;
 	if (!any || !passo->has_inputs || passo->snapshot.state != PASSO_STATE_STOPPED
-	    || passo->snapshot.cause == PASSO_CAUSE_LIMIT)
+	    || (passo->snapshot.cause == PASSO_CAUSE_LIMIT && !inside))
 		return PASSO_OK;
 	enum passo_error error = passo_read_inputs(passo, &now);
 	if (error != PASSO_OK)
 		return error;
-	if (now.estop || (now.axes & now.was_alarm) != 0u)
+	/* its flag may be older, but a limit that stopped the axis is still active */
+	const bool alarm = (now.axes & now.was_alarm & ~(unsigned)(now.limit_low | now.limit_high)) != 0u;
+	if (now.estop || alarm)
 		passo_driver_forget_all(passo);
 	else if (now.axes != 0u && !is_soft_limit(passo))
 		forget(passo, passo->movers);
-	return PASSO_OK;
+	if (!inside || now.estop)
+		return PASSO_OK;
+#ifndef PASSO_CARTESIAN
+	passo->square.stopped = now.axes;
+#endif
+	if ((now.axes & (unsigned)~sought(passo)) == 0u)
+		return PASSO_OK;
+	return alarm ? PASSO_ERROR_ALARM : PASSO_ERROR_LIMIT;
 }

@@ -73,34 +73,6 @@ enum passo_error passo_driver_begin(struct passo *passo, struct passo_task task,
 	return settle(passo, error);
 }
 
-/* Why the channel stopped. */
-static enum passo_error cause(const struct passo *passo)
-{
-	const enum passo_error error = passo_driver_fault_of(passo->snapshot.cause);
-
-	return error != PASSO_OK ? error : PASSO_ERROR_STOPPED;
-}
-
-#ifndef PASSO_CARTESIAN
-/* Motors of the axis being squared whose limits have stopped the channel; and whether it was stopped by them
- * alone: it is clear then. */
-static enum passo_error leave_limit(
-    struct passo *passo, const struct passo_trigger_report *report, bool *by_limit)
-{
-	struct passo_readings readings = {.axes = 0};
-	enum passo_error error = PASSO_OK;
-
-	if (passo_driver_is_stopped(passo) && cause(passo) == PASSO_ERROR_LIMIT)
-		error = passo_read_inputs(passo, &readings);
-	passo->square.stopped = readings.axes & passo->task.home->forward;
-	*by_limit = passo->square.stopped != 0u && !report->fired;
-	if (error != PASSO_OK || !*by_limit)
-		return error;
-	error = passo_driver_disarm(passo);
-	return error == PASSO_OK ? passo_clear(passo) : error;
-}
-#endif
-
 #ifdef PASSO_WITHOUT_TRACKERS
 static bool has_settled(const struct passo *passo)
 {
@@ -147,23 +119,12 @@ static enum passo_error next(struct passo *passo)
 
 	if (passo->task.armed || settled)
 		error = passo_read_trigger(passo, &report);
-	if (error != PASSO_OK)
-		return error;
 #ifndef PASSO_CARTESIAN
-	if (!settled && passo->task.kind == PASSO_TASK_HOME && passo_driver_squares(passo->task.home)) {
-		bool by_limit;
-
-		error = leave_limit(passo, &report, &by_limit);
-		if (error == PASSO_OK && by_limit)
-			error = settle_trackers(passo);
-		if (error != PASSO_OK || by_limit)
-			return error == PASSO_OK ? passo_driver_home_next(passo, &report) : error;
-	}
+	if (!settled)
+		passo->square.stopped = 0;
 #endif
-	if (passo_driver_is_stopped(passo) && !report.fired)
-		return cause(passo);
-	if (report.fired && !settled) {
-		passo->task.armed = false;
+	if (error == PASSO_OK && !settled && (report.fired || passo_driver_is_stopped(passo))) {
+		passo->task.armed &= !report.fired; /* its latch stays */
 		error = passo_clear(passo);
 		if (error == PASSO_OK)
 			error = settle_trackers(passo);
@@ -175,6 +136,14 @@ static enum passo_error next(struct passo *passo)
 	if (passo->task.kind == PASSO_TASK_HOME)
 		return passo_driver_home_next(passo, &report);
 	return report.fired || passo->task.optional ? PASSO_OK : PASSO_ERROR_SWITCH_MISSED;
+}
+
+/* Why the channel stopped. */
+static enum passo_error cause(const struct passo *passo)
+{
+	const enum passo_error error = passo_driver_fault_of(passo->snapshot.cause);
+
+	return error != PASSO_OK ? error : PASSO_ERROR_STOPPED;
 }
 
 enum passo_error passo_driver_task(struct passo *passo, enum passo_error error)
