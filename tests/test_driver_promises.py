@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Single sentences of passo.h that no other test of the driver needs."""
 
+import faulthandler
 from typing import Any
 
 import pytest
@@ -77,6 +78,42 @@ def test_no_pointer_is_an_error(with_all: Driver, call: tuple[Any, ...]) -> None
     """Not a crash, and nothing is sent."""
     frames = with_all.engine.frames
     assert error_of(with_all, *call) == "ARGUMENT" and with_all.engine.frames == frames
+
+
+@pytest.mark.parametrize(
+    ("call", "rest"),
+    [
+        *[(call, (NULL,)) for call in ("set_output", "configure_outputs", "read_outputs", "arm_compare")],
+        *[(call, (NULL, NULL)) for call in ("output_word",)],
+        *[("set_levels", (0,)), ("set_pitch", (1,)), ("disarm_compare", ())],
+        *[("push_raster", (NULL, 0, NULL)), ("thread", (NULL,)), ("pass", (NULL,))],
+    ],
+)
+def test_no_channel_is_an_error(call: str, rest: tuple[Any, ...]) -> None:
+    assert getattr(planner(), f"passo_{call}")(NULL, *rest) == planner().PASSO_ERROR_ARGUMENT
+
+
+def test_an_axis_that_is_none_has_no_speed(with_all: Driver) -> None:
+    for axis in (with_all.c.axes, 255):
+        assert planner().passo_highest_speed(with_all.c, axis, Q32) == 0
+
+
+def test_a_frame_that_is_gone_is_sent_again() -> None:
+    """The host was opened again for another channel: one whose hold was due does not wait for it forever."""
+    wire = Wire(Parameters(channels=2))
+    driver, lib = open_driver(wire), planner()
+    host, other = driver.c.host, ffi().new("struct passo *")
+    options = [struct("options", channel=channel, clock_hz=wire.clock_hz) for channel in range(2)]
+    assert lib.passo_open_channel(other, host, options[1]) == 0
+    wire.there = lambda words: None
+    lib.passo_hold(other)
+    lib.passo_poll(other)
+    wire.there = list
+    hardware = ffi().new("struct passo_hardware *", host.hardware)
+    assert lib.passo_open(driver.c, host, hardware, options[0]) == 0
+    faulthandler.dump_traceback_later(60, exit=True)
+    assert lib.passo_clear(other) == 0
+    faulthandler.cancel_dump_traceback_later()
 
 
 def test_a_motion_whose_inputs_stay_unknown_is_given_up() -> None:

@@ -301,7 +301,7 @@ struct passo_axis_config {
 enum passo_error passo_configure_axis(
     struct passo *passo, uint8_t axis, const struct passo_axis_config *config);
 /* The highest speed that the pin timing of an axis allows, UQ32.32 units/s, rounded up: without a limit it is
- * UINT64_MAX; not configured: 0. `steps_per_unit` is UQ32.32. */
+ * UINT64_MAX; not configured, or no such axis: 0. `steps_per_unit` is UQ32.32. */
 uint64_t passo_highest_speed(const struct passo *passo, uint8_t axis, uint64_t steps_per_unit);
 /* Sets the drive enable output. Enabling works at any time. Disabling works only at rest or when stopped, and
  * waits until the last step has left the pins; to disable immediately, call passo_abort() first, after

@@ -102,7 +102,8 @@ enum passo_error passo_driver_send_due(struct passo *passo)
 			return error;
 	}
 	passo_host_step(host);
-	return passo->posted == PASSO_PENDING ? PASSO_PENDING : settle(passo);
+	/* else it is gone if the host was opened again */
+	return host->posted == &passo->posted ? PASSO_PENDING : settle(passo);
 }
 
 enum passo_error passo_driver_send_due_until(struct passo *passo, enum passo_post least)

@@ -11,19 +11,25 @@
 #define WIDTH_MAX ((UINT32_C(1) << PASSO_CHANNEL_COMPARE_PULSE_WIDTH_BITS) - 1u)
 #define VALUES_PER_WORD 4u
 
-/* `has`: the core has what the call needs. */
-static enum passo_error check(const struct passo *passo, bool has, const void *pointer)
+/* What of the core a call needs. */
+enum part { NEEDS_OUTPUTS, NEEDS_RASTER, NEEDS_COMPARE };
+static enum passo_error check(const struct passo *passo, enum part part, const void *pointer)
 {
 	enum passo_error error = passo_driver_check(passo);
 
-	if (error == PASSO_OK && !has)
-		error = PASSO_ERROR_NO_OUTPUTS;
-	return error == PASSO_OK && !pointer ? PASSO_ERROR_ARGUMENT_POINTER : error;
+	if (error != PASSO_OK)
+		return error;
+	const bool has = part == NEEDS_OUTPUTS ? passo->has_outputs
+	               : part == NEEDS_RASTER  ? passo->has_raster
+	                                       : passo->has_compare;
+	if (!has)
+		return PASSO_ERROR_NO_OUTPUTS;
+	return pointer ? PASSO_OK : PASSO_ERROR_ARGUMENT_POINTER;
 }
 
 static enum passo_error check_output(const struct passo *passo, const struct passo_output *output)
 {
-	enum passo_error error = check(passo, passo->has_outputs, output);
+	enum passo_error error = check(passo, NEEDS_OUTPUTS, output);
 
 	if (error == PASSO_OK
 	    && (output->power > PASSO_POWER_FULL || (output->raster && output->power != 0u)))
@@ -68,7 +74,7 @@ static enum passo_error write_at_rest(
 enum passo_error passo_set_levels(struct passo *passo, uint8_t levels)
 {
 	const uint32_t word = levels;
-	enum passo_error error = check(passo, passo->has_outputs, passo);
+	enum passo_error error = check(passo, NEEDS_OUTPUTS, passo);
 
 	if (error == PASSO_OK)
 		error = write_at_rest(passo, PASSO_CHANNEL_OUTPUT_LEVELS, &word, 1);
@@ -79,7 +85,7 @@ enum passo_error passo_set_levels(struct passo *passo, uint8_t levels)
 
 enum passo_error passo_configure_outputs(struct passo *passo, const struct passo_outputs_config *config)
 {
-	enum passo_error error = check(passo, passo->has_outputs, config);
+	enum passo_error error = check(passo, NEEDS_OUTPUTS, config);
 
 	if (error != PASSO_OK)
 		return error;
@@ -102,7 +108,7 @@ enum passo_error passo_configure_outputs(struct passo *passo, const struct passo
 enum passo_error passo_read_outputs(struct passo *passo, struct passo_outputs_state *state)
 {
 	uint32_t word;
-	enum passo_error error = check(passo, passo->has_outputs, state);
+	enum passo_error error = check(passo, NEEDS_OUTPUTS, state);
 
 	if (error == PASSO_OK)
 		error = passo_host_read(
@@ -119,7 +125,7 @@ enum passo_error passo_read_outputs(struct passo *passo, struct passo_outputs_st
 
 enum passo_error passo_set_pitch(struct passo *passo, uint32_t substeps)
 {
-	enum passo_error error = check(passo, passo->has_raster, passo);
+	enum passo_error error = check(passo, NEEDS_RASTER, passo);
 
 	if (error == PASSO_OK && (substeps == 0u || substeps > PASSO_SUBSTEPS_MAX))
 		error = PASSO_ERROR_PITCH;
@@ -131,7 +137,7 @@ enum passo_error passo_push_raster(struct passo *passo, const uint8_t *values, s
 {
 	uint32_t words[PASSO_FRAME_PAYLOAD_MAX] = {0};
 	struct passo_outputs_state state;
-	enum passo_error error = check(passo, passo->has_raster, taken);
+	enum passo_error error = check(passo, NEEDS_RASTER, taken);
 
 	if (error == PASSO_OK && !values)
 		error = PASSO_ERROR_ARGUMENT_POINTER;
@@ -158,7 +164,7 @@ enum passo_error passo_push_raster(struct passo *passo, const uint8_t *values, s
 enum passo_error passo_arm_compare(struct passo *passo, const struct passo_compare_config *config)
 {
 	int32_t now[PASSO_AXES_MAX];
-	enum passo_error error = check(passo, passo->has_compare, config);
+	enum passo_error error = check(passo, NEEDS_COMPARE, config);
 
 	if (error == PASSO_OK && config->axis >= passo->axes)
 		error = PASSO_ERROR_ARGUMENT_AXIS;
@@ -183,7 +189,7 @@ enum passo_error passo_arm_compare(struct passo *passo, const struct passo_compa
 enum passo_error passo_disarm_compare(struct passo *passo)
 {
 	const uint32_t word = 0;
-	enum passo_error error = check(passo, passo->has_compare, passo);
+	enum passo_error error = check(passo, NEEDS_COMPARE, passo);
 
 	return error != PASSO_OK ? error : write_at_rest(passo, PASSO_CHANNEL_COMPARE_PULSE, &word, 1);
 }

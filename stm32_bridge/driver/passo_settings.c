@@ -63,9 +63,9 @@ enum passo_error passo_configure_axis(
 
 uint64_t passo_highest_speed(const struct passo *passo, uint8_t axis, uint64_t steps_per_unit)
 {
-	const uint32_t clocks = passo->axis[axis].shortest_clocks;
+	const uint32_t clocks = axis < passo->axes ? passo->axis[axis].shortest_clocks : 0u;
 
-	if (clocks == 0)
+	if (clocks == 0u)
 		return 0;
 	const uint64_t steps = passo_mul_div_ceil(passo->machine.clock_hz, UINT64_C(1) << 32, clocks);
 	return passo_mul_div_ceil(steps, UINT64_C(1) << 32, steps_per_unit);
