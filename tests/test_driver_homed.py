@@ -159,7 +159,7 @@ def test_a_trigger(driver: Driver, action: TriggerAction) -> None:
 
 @pytest.mark.parametrize("pressed", [1, 300])
 def test_a_limit_at_the_end_of_a_probe(driver: Driver, pressed: int) -> None:
-    """Found, it stops softly: a hard limit within that stop overrides it and ends it, one at rest does not."""
+    """Found, it stops softly: a hard limit within that stop overrides and ends it, one at rest does not."""
     driver.call("configure_motion", 2 * MS, 100 * MS, 0)
     given = struct("probe", steps=[-20_000, 0, 0], speed=20_000 * Q32, acceleration=500_000 * Q32)
     driver.call("probe", given)
@@ -169,6 +169,25 @@ def test_a_limit_at_the_end_of_a_probe(driver: Driver, pressed: int) -> None:
     driver.engine.engine.set("limit_low", 1)
     assert end(driver) == ("LIMIT" if pressed == 1 else "OK")
     assert homed(driver) == [pressed == 300, True, True]
+
+
+def test_a_soft_stop_of_many_short_lines(driver: Driver) -> None:
+    """It takes its time on the path, though the core holds less than that: the stream continues."""
+    driver.call("configure_motion", 50 * MS, 50 * MS, 0)
+    lines, ramps = path(20_000, 200)
+    driver.stream(Source(lines, ramps))
+    while driver.positions()[0] < 3000:
+        driver.poll()
+        driver.engine.run(MS // 50)
+    driver.call("stop")
+    stopped_at = driver.engine.clock
+    while driver.is_moving:
+        driver.poll()
+        driver.engine.run(MS // 50)
+    assert 49 * MS < driver.engine.clock - stopped_at < 70 * MS
+    assert driver.cause == Cause.STOP and homed(driver) == KEPT
+    driver.call("clear")
+    assert driver.positions() == driver.engine.counted()[1]
 
 
 @pytest.mark.parametrize("kind", ["lines", "ramps"])

@@ -179,12 +179,13 @@ static void say_readings(const struct passo_call *call)
 {
 	static const char *const NAMES[] = {
 	    "counts", "speed", "error", "greatest", "latch", "indexes", "illegal"};
-	static const bool FRACTION[PASSO_COUNT(NAMES)] = {false, true, true};
 	const struct passo_encoder_reading *readings = call->channel->encoder_readings;
 	const struct passo_sink *sink = &call->console->sink;
 	uint8_t exceeded = 0;
 
 	for (unsigned which = 0; which < PASSO_COUNT(NAMES); which++) {
+		const bool fraction = which == 1u || which == 2u;
+
 		if (which == 1u && readings[0].speed == PASSO_NO_UNITS)
 			continue;
 		passo_say(sink, " %s=", NAMES[which]);
@@ -192,7 +193,7 @@ static void say_readings(const struct passo_call *call)
 			const int64_t value = value_of(&readings[axis], which);
 
 			passo_say(sink, axis == 0u ? "" : ",");
-			if (FRACTION[which])
+			if (fraction)
 				passo_say(sink, "%m", value);
 			else
 				passo_say(sink, "%d", (int32_t)value);

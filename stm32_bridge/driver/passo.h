@@ -431,8 +431,9 @@ enum passo_error passo_resume(struct passo *passo);
  * the resume. */
 enum passo_error passo_override(struct passo *passo, uint32_t percent);
 enum passo_error passo_override_q16(struct passo *passo, uint32_t rate);
-/* Soft and hard stop. The queues are flushed and a stream ends; passo_clear() is needed afterwards. After a
- * link error every poll resends it before anything else; an abort replaces a pending stop. */
+/* Soft and hard stop. The queues are flushed and a stream ends, in a soft stop when the axes are at rest:
+ * until then polls feed it. passo_clear() is needed afterwards. After a link error every poll resends the
+ * stop before anything else; an abort replaces a pending stop. */
 enum passo_error passo_stop(struct passo *passo);
 enum passo_error passo_abort(struct passo *passo);
 /* Leaves the stopped state with empty queues and reads the positions: about four frames. Sends a pending stop

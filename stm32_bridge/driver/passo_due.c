@@ -83,9 +83,12 @@ enum passo_error passo_driver_send_due(struct passo *passo)
 	const enum passo_post most = urgent(passo);
 	enum passo_error error = PASSO_OK;
 
-	/* a stop preempts a frame that is still being retried */
-	if (most >= PASSO_POST_STOP && passo->post < most)
+	/* a stop preempts a frame that is being retried; lines or ramps that it holds may be lost */
+	if (most >= PASSO_POST_STOP && passo->post < most && !host->in_flight) {
+		if (passo->post == PASSO_POST_ITEMS)
+			passo_driver_end_stream(passo);
 		passo_driver_drop(passo);
+	}
 	if (passo->post == PASSO_POST_NONE) {
 		if (most == PASSO_POST_NONE)
 			return PASSO_OK;
@@ -125,7 +128,9 @@ enum passo_error passo_driver_require_sent(struct passo *passo, enum passo_post 
 
 void passo_driver_halt(struct passo *passo, enum passo_due due)
 {
-	passo_driver_end_stream(passo);
+	/* in a soft stop the path continues, and needs its lines */
+	if (due == PASSO_DUE_ABORT || passo->stream != PASSO_STREAM_RUNS)
+		passo_driver_end_stream(passo);
 	passo->task.kind = PASSO_TASK_NONE;
 	if (passo->expects == PASSO_EXPECT_POSITIONS)
 		passo->expects = PASSO_EXPECT_END;

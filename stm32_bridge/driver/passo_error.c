@@ -134,20 +134,28 @@ ERRORS(IN_ORDER, IN_ORDER, IN_ORDER, IN_ORDER)
 	_Static_assert(offsetof(struct refusals, name) == PASSO_VERDICT_##name - FIRST_REFUSAL, #name);
 REFUSALS(REFUSAL_IN_ORDER)
 
-#define ARGUMENT(which) [PASSO_ERROR_ARGUMENT_##which - PASSO_ERROR_ARGUMENT]
-static const char *const arguments[PASSO_ERROR_ARGUMENT_END - PASSO_ERROR_ARGUMENT] = {
-    ARGUMENT(POINTER) = "null pointer",
-    ARGUMENT(AXIS) = "no such axis on the channel",
-    ARGUMENT(CHANNEL) = "no such channel on the core",
-    ARGUMENT(PIN_TIME) = "a pin time is too long",
-    ARGUMENT(DRAIN_VELOCITY) = "drain velocity is above half a substep per clock",
-    ARGUMENT(RATE) = "override must be 1 to 100 %",
-    ARGUMENT(STEPS_PER_TURN) = "steps_per_turn is 0",
-    ARGUMENT(SHAPE) = "no such table bank, or not a valid shape",
-    ARGUMENT(PLAN) = "the plan was not made by the planner",
-    ARGUMENT(LENGTH) = "invalid frame length",
-    ARGUMENT(POSTED) = "a frame is already pending, or a read is required first",
+#define ARGUMENTS(X)                                                                                         \
+	X(POINTER, "null pointer")                                                                           \
+	X(AXIS, "no such axis on the channel")                                                               \
+	X(CHANNEL, "no such channel on the core")                                                            \
+	X(PIN_TIME, "a pin time is too long")                                                                \
+	X(DRAIN_VELOCITY, "drain velocity is above half a substep per clock")                                \
+	X(RATE, "override must be 1 to 100 %")                                                               \
+	X(STEPS_PER_TURN, "steps_per_turn is 0")                                                             \
+	X(SHAPE, "no such table bank, or not a valid shape")                                                 \
+	X(PLAN, "the plan was not made by the planner")                                                      \
+	X(LENGTH, "invalid frame length")                                                                    \
+	X(POSTED, "a frame is already pending, or a read is required first")
+
+static const char argument_texts[] = ARGUMENTS(PASSO_STRING_TEXT);
+
+struct arguments {
+	ARGUMENTS(PASSO_STRING_PLACE)
 };
+#define ARGUMENT_IN_ORDER(name, text)                                                                        \
+	_Static_assert(                                                                                      \
+	    offsetof(struct arguments, name) == PASSO_ERROR_ARGUMENT_##name - PASSO_ERROR_ARGUMENT, #name);
+ARGUMENTS(ARGUMENT_IN_ORDER)
 
 static bool is_argument(enum passo_error error)
 {
@@ -190,7 +198,7 @@ const char *passo_error_name(enum passo_error error)
 const char *passo_error_text(enum passo_error error)
 {
 	if (is_argument(error))
-		return arguments[error - PASSO_ERROR_ARGUMENT];
+		return passo_string(argument_texts, error - PASSO_ERROR_ARGUMENT);
 	if (is_absurd(error))
 		return "implausibly slow or short move: unit macro missing?";
 	if (is_of_plan(error))

@@ -36,6 +36,7 @@ void passo_driver_end_stream(struct passo *passo)
 
 static enum passo_error fail(struct passo *passo, enum passo_error error)
 {
+	passo_driver_end_stream(passo);
 	passo_driver_halt(passo, PASSO_DUE_STOP);
 	passo_driver_assume_worse(passo, PASSO_ASSUMED_BROKEN);
 	passo->fault = error;
