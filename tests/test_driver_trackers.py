@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
+from passo import registers as r
 from passo.build import Parameters
 from passo.driver import Driver
 from passo.engine import model_engine
@@ -371,3 +372,39 @@ def test_targets_of_a_table() -> None:
     values = ffi().new("int16_t[]", [3, 9])
     even = struct("track_table", targets=values, points=2, begin=0, pitch=0)
     assert at(even, 7) == 3
+
+
+@pytest.mark.parametrize(
+    ("pin", "level", "after"), [("estop_n", 0, 1), ("limit_high", 1, 1), ("alarm", 1, 0), ("probe", 1, 1)]
+)
+def test_a_stop_within_the_call_of_another_tracker(pin: str, level: int, after: int) -> None:
+    """It is enabled by a read and a write: a tracker that the stop between them has ended stays ended."""
+    driver, wire = machine()
+    driver.call("configure_inputs", 0, struct("input_config", limit_low=True, limit_high=True))
+    driver.call("configure_probe", False)
+    for axis in range(2):
+        driver.call("configure_tracker", track(axis))
+    driver.call("track_to", track(0), 30_000)
+    if pin == "probe":
+        driver.call("arm_trigger", struct("trigger_config", source=TriggerSource.PROBE, action=2))
+    wire.run(wire.clock_hz // 100)
+    between: list[list[int]] = []
+
+    def stop(words: list[int]) -> list[int]:
+        enables = words[0] & 0xFFF == driver.c.base + r.CHANNEL_TRACKER_ENABLE
+        if enables and words[0] >> 28 == Operation.WRITE and not between:
+            between.append(words)
+            wire.engine.set(pin, level)
+            wire.engine.run(wire.clock_hz // 1000)
+            wire.engine.set(pin, after)
+        return list(words)
+
+    wire.there = stop
+    driver.call("track_to", track(1), 500)
+    assert between and not reading(driver, 0).enabled and not reading(driver, 1).enabled
+    there = reading(driver, 0).position
+    if pin == "estop_n":
+        driver.call("clear_estop")
+    driver.call("clear")
+    wire.run(wire.clock_hz // 10)
+    assert reading(driver, 0).position == there and not reading(driver, 1).position

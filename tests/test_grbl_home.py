@@ -170,3 +170,18 @@ def test_a_home_without_its_switch(tmp_path: Path) -> None:
         assert session.line("$132=4") == "ok"
         said = session.line("$H")
         assert "ALARM:9" in said and "error:9" in said
+
+
+def test_no_setting_lets_a_limit_pass(tmp_path: Path) -> None:
+    """`$21=0` does not: the core stops at each limit that is fitted; off it the axis moves as before."""
+    machine = machine_of(tmp_path)
+    with machine_at("model", machine) as engine:
+        session = Session(engine, machine)
+        session.line("$X")
+        assert session.line("$21=0") == session.line("G0 X-9") == "ok"
+        session.settle()
+        session.line("G1 X-15 F1000")
+        assert session.settle() == "ALARM:1"
+        assert -10.5 < session.fields("MPos")[0] < -9.9
+        assert session.line("$X").endswith("ok") and session.line("G0 X-8") == "ok"
+        assert session.settle() == "" and session.fields("MPos")[0] == -8
