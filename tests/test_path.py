@@ -246,6 +246,19 @@ def test_a_low_feed_takes_the_time_of_its_length(feed: float, size: float, profi
     assert plan([((0, 0, -size), feed)], settings, 48).seconds < 1.001 * size / feed + 10 * lost
 
 
+@pytest.mark.parametrize("profile", PROFILES)
+@pytest.mark.parametrize("feed", [3e-6, 1.5e-6, 1e-7])
+def test_the_slowest_feeds_move(feed: float, profile: str) -> None:
+    """Also those that take no length to reach."""
+    path = Path(settings_of(profile), Parameters())
+    path.add((0.1, 0, 0), feed)
+    path.add((0.1, 0.1, 0), feed)
+    path.end()
+    made = [path.next_ramp().velocity_end for _ in range(100)]
+    unit = 64_000_000 / path.substeps_per_mm / 2**32  # mm/s, by which feeds are rounded
+    assert 0 < made[0] / 2**16 * unit <= max(feed, unit) and made == made[:1] * 100
+
+
 def test_curves_leave_an_axis_within_its_acceleration() -> None:
     """Along the path and across it together, where both are at their most."""
     fine = replace(MACHINE, axes=(PathAxis(1600), PathAxis(1600), PathAxis(400, 12, 100)))

@@ -85,7 +85,8 @@ static void follow(
 	const uint64_t limit = passo_path_change(path, slope, used);
 	uint64_t change = begin < end ? end - begin : begin - end;
 
-	if (used < ticks)
+	/* from rest to a speed that takes no length to reach: a share of it may be none at all */
+	if (used < ticks && (begin > 0 || aim->kind != PASSO_PATH_FLAT))
 		change = passo_mul_div(change, used, ticks);
 	change = passo_path_smaller(change, limit);
 	ramp->shape = shaped ? passo_path_shape(path) : PASSO_SHAPE_LINEAR;
