@@ -251,9 +251,24 @@ def test_what_takes_more_than_an_hour(
     path.write_text(text)
     assert cli.main(["preview", str(path), "--machine", str(machine), "--out", str(tmp_path)]) == 1
     (problem,) = json.loads((tmp_path / "preview.json").read_text())["problems"]
-    told = "timeout: an hour of simulated time has passed since the last line taken, "
+    told = "timeout: no step for an hour of simulated time; the last line taken is "
     assert problem == f"{told}{path}:{line}"
     assert capsys.readouterr().err == f"{path}: {problem}\n"
+
+
+@pytest.mark.parametrize("command", ["preview", "run"])
+def test_a_line_that_moves_for_hours(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], command: str
+) -> None:
+    """It is no timeout, however slow its steps are; without a step in an hour that is the reason."""
+    path = tmp_path / "part.nc"
+    path.write_text("G1 X0.05 F0.0005\n")
+    assert cli.main([command, str(path), "--machine", str(MACHINE), "--out", str(tmp_path)]) == 0
+    assert "in 6117.7" in capsys.readouterr().out
+    path.write_text("G1 X0.05 F0.0001\n")
+    assert cli.main([command, str(path), "--machine", str(MACHINE), "--out", str(tmp_path)]) != 0
+    told = f"{path}: timeout: no step for an hour of simulated time; the last line taken is {path}:1\n"
+    assert told in capsys.readouterr().err
 
 
 def test_ctrl_c_at_the_command(

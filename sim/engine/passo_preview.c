@@ -8,7 +8,7 @@
 
 #include "passo_preview_core.h"
 
-#define PATIENCE 3600u       /* seconds without a line that are too many */
+#define PATIENCE 3600u       /* seconds without a line or step that are too many */
 #define SLEWS_PER_SECOND 20u /* of hold and stop, from full speed */
 
 /* An array that grows. */
@@ -229,6 +229,8 @@ bool passo_preview_play(struct passo_preview *preview, uint32_t lines)
 	uint64_t quiet = preview->core.clock;
 
 	while (!passo_program_is_done(&preview->program)) {
+		if (preview->core.step > quiet)
+			quiet = preview->core.step;
 		if (preview->failed || preview->core.clock - quiet > patience)
 			return false;
 		while (passo_program_is_ready(&preview->program)) {

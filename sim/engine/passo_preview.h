@@ -79,7 +79,7 @@ void passo_preview_begin(
     struct passo_preview *preview, const struct passo_gcode *gcode, const int32_t *positions);
 
 /* Plays until `lines` further lines are taken. False: the program has ended, or memory is short, or nothing
- * moves any more for an hour. */
+ * makes a step for an hour. */
 bool passo_preview_play(struct passo_preview *preview, uint32_t lines);
 /* Lines of the text taken so far; whether all motions have ended; whether the core was short of ramps. */
 uint32_t passo_preview_taken(const struct passo_preview *preview);

@@ -74,11 +74,30 @@ static void pass_lines(struct passo_preview_core *core, double way)
 		pop_line(core);
 }
 
+/* Notes a step of the axis with the most of them: of its line, it lasts the same share. */
+static void note_step(struct passo_preview_core *core, double way, uint64_t clock)
+{
+	uint32_t most = 0;
+
+	if (core->line_count == 0u)
+		return;
+	const struct passo_line *line = line_at(core, 0);
+	for (unsigned i = 0; i < PASSO_AXES_MAX; i++)
+		most = line->steps[i] > most ? line->steps[i] : most;
+	if (most * (way - core->stepped) < line->substeps)
+		return;
+	core->stepped = way;
+	core->step = clock;
+}
+
 static void end_ramp(struct passo_preview_core *core, uint64_t clock)
 {
 	const struct passo_ramp ramp = *ramp_at(core, 0);
+	const double way = covered(core, &ramp, 1);
 
-	core->distance += covered(core, &ramp, 1);
+	core->distance += way;
+	core->way += way;
+	note_step(core, core->way, clock);
 	pass_lines(core, 0);
 	core->velocity = ramp.velocity_end;
 	core->began = clock;
@@ -124,7 +143,10 @@ void passo_preview_core_run(struct passo_preview_core *core, uint64_t clocks)
 		const struct passo_ramp *ramp = ramp_at(core, 0);
 		const double all = ldexp(ramp->ticks, core->parameters.tick_log2);
 
-		pass_lines(core, covered(core, ramp, (double)(core->clock - core->began) / all));
+		const double way = covered(core, ramp, (double)(core->clock - core->began) / all);
+
+		note_step(core, core->way + way, core->clock);
+		pass_lines(core, way);
 	}
 }
 

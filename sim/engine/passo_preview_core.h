@@ -25,6 +25,9 @@ struct passo_preview_core {
 	uint64_t began;    /* clock at which the ramp did */
 	uint64_t velocity; /* then, UQ0.48 */
 	double distance;   /* then: substeps into the line */
+	double way;        /* then: substeps of all ramps */
+	double stepped;    /* of `way`, at the last step that was noted, */
+	uint64_t step;     /* and its clock */
 	uint16_t address;  /* of what is posted */
 	size_t length;
 	uint32_t word;

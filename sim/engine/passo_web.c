@@ -31,6 +31,7 @@ static struct {
 	char text[TEXT];
 	size_t length;
 	struct passo_pin_event last;
+	uint64_t stepped; /* clock of the last step */
 	struct list list[LISTS];
 } web;
 
@@ -58,6 +59,8 @@ static void take(const struct passo_pin_event *event)
 		if (dir >> axis & 1u)
 			append(KINDS * axis + 2u, event->clock);
 	}
+	if (step != 0u)
+		web.stepped = event->clock;
 	if (event->running != web.last.running)
 		append(RUNNING, event->clock);
 	web.last = *event;
@@ -78,6 +81,12 @@ static void collect(void)
 struct passo_engine *web_engine(void)
 {
 	return web.engine;
+}
+
+uint64_t web_last_step(void)
+{
+	collect();
+	return web.stepped;
 }
 
 void web_run(uint64_t clocks)
@@ -137,6 +146,7 @@ bool web_start(uint32_t axes, uint32_t clock_hz, bool encoders, bool outputs)
 	for (unsigned number = 0; number < LISTS; number++)
 		web.list[number].count = 0;
 	web.last = (struct passo_pin_event){0};
+	web.stepped = 0;
 	web.length = 0;
 	web.clock_hz = clock_hz;
 	web.engine = passo_engine_create(&config);

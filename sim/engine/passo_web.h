@@ -21,6 +21,8 @@ struct passo_engine *web_engine(void);
 
 /* Runs the core. */
 void web_run(uint64_t clocks);
+/* Clock of the last step; 0: there was none. */
+uint64_t web_last_step(void);
 
 /* The functions of a struct passo_terminal_caller. */
 bool web_transfer(void *context, const uint32_t *mosi, uint32_t *miso, size_t count);

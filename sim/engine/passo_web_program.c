@@ -12,7 +12,7 @@
 enum {
 	LOOPS_PER_SECOND = 1000,    /* polls of the driver */
 	FOLLOWS_PER_SECOND = 10000, /* the same in step with the spindle */
-	PATIENCE = 3600,            /* seconds without a line that are too many */
+	PATIENCE = 3600,            /* seconds without a line or step that are too many */
 	LOOK_AHEAD = 48,
 	AXES = 6,
 	SLEWS_PER_SECOND = 20, /* of hold and stop, from full speed */
@@ -52,7 +52,7 @@ static struct {
 	uint32_t kept[FILES];    /* lines of each file */
 	uint32_t files, refused, unread;
 	uint32_t chords;
-	uint64_t quiet; /* clock of the last chord */
+	uint64_t quiet; /* clock of the last chord or step */
 	uint16_t inputs;
 	struct passo_program_settings settings;
 	struct passo_program program;
@@ -368,8 +368,13 @@ EXPORT("go") int32_t web_go(uint32_t turns)
 			web.quiet = passo_engine_clock(web_engine());
 		}
 		if (passo_engine_clock(web_engine()) - web.quiet > PATIENCE * hz) {
-			web_write(NULL, "timeout: no motion for an hour of simulated time");
-			return FAILED;
+			const uint64_t step = web_last_step();
+
+			if (step <= web.quiet) {
+				web_write(NULL, "timeout: no step for an hour of simulated time");
+				return FAILED;
+			}
+			web.quiet = step;
 		}
 	}
 	return GOES_ON;

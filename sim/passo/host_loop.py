@@ -46,6 +46,12 @@ class HostLoop:
             self._events.append(self.engine.drain())
         self.engine.run(clocks)
 
+    def last_step(self) -> int:
+        """Clock of the last step so far; 0: there was none."""
+        self._events.append(self.engine.drain())
+        steps = (events["clock"][events["step"] > 0] for events in reversed(self._events))
+        return next((int(clocks[-1]) for clocks in steps if len(clocks)), 0)
+
     def steps(self, axes: int) -> Steps:
         """All steps so far."""
         self._events.append(self.engine.drain())

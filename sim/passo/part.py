@@ -36,7 +36,8 @@ LOOPS_PER_SECOND = 1000  # polls of the driver
 FOLLOWS_PER_SECOND = 10_000  # the same in step with the spindle
 SLEWS_PER_SECOND = 20  # of hold and stop, from full speed
 STANDARD_INPUT, STDIN = Path("-"), Path("stdin")
-PATIENCE = 3600  # simulated seconds without an end of the path that are too many
+PATIENCE = 3600  # simulated seconds without a line or step that are too many
+TIMEOUT = "timeout: no step for an hour of simulated time; the last line taken is"
 
 
 @dataclass(frozen=True)
@@ -359,7 +360,9 @@ def play_part(
                 last, quiet = program.chords, engine.clock
                 progress(last)
             if engine.clock - quiet > PATIENCE * machine.clock_hz:
-                raise BadInputError(f"{part.path}: timeout: no motion for an hour of simulated time")
+                if (step := loop.last_step()) <= quiet:
+                    raise BadInputError(f"{part.path}: {TIMEOUT} {part.places[taken - 1]}")
+                quiet = step
     except (GcodeError, DriverError) as error:
         raise BadInputError(f"{part.places[begun if program.follows else taken - 1]}: {error}") from None
     except KeyboardInterrupt:

@@ -12,7 +12,7 @@ from passo.console import progress
 from passo.course import Course
 from passo.expand.tools import read_tools
 from passo.output import check_folder, empty_folder, write_json, write_text
-from passo.part import Lines, Part, plan_part, read_part
+from passo.part import TIMEOUT, Lines, Part, plan_part, read_part
 from passo.part_command import machine_of, say_unread, surface_of
 from passo.path import LOOK_AHEAD
 from passo.toolchain import paths
@@ -105,8 +105,7 @@ def _problems(part: Part, course: Course) -> list[str]:
         found.append("the core would run out of ramps")
     if not planned.ended:
         last = part.places[max(planned.taken, 1) - 1]
-        hour = "timeout: an hour of simulated time has passed since the last line taken, "
-        found.append(f"canceled at {last}" if planned.canceled else f"{hour}{last}")
+        found.append(f"{'canceled at' if planned.canceled else TIMEOUT} {last}")
     return found
 
 
