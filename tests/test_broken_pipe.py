@@ -59,7 +59,7 @@ def test_it_ends_quietly(
 @pytest.mark.parametrize("command", [("rtl",), CONSOLE], ids=["rtl", "grbl"])
 def test_in_a_shell(command: tuple[str, ...]) -> None:
     """`passo ... | head -1`, to the end of the interpreter, when nothing is to be built any more."""
-    whole = [sys.executable, "-m", "passo.cli", *command]
+    whole = [sys.executable, "-m", "passo", *command]
     subprocess.run(whole, stdin=subprocess.DEVNULL, capture_output=True, check=True)
     writer = broken()
     done = subprocess.run(whole, input="".join(LINES), stdout=writer, stderr=subprocess.PIPE, text=True)
@@ -68,7 +68,5 @@ def test_in_a_shell(command: tuple[str, ...]) -> None:
 
 
 def test_a_closed_output_is_no_error() -> None:
-    done = subprocess.run(
-        ["sh", "-c", f"{sys.executable} -m passo.cli rtl >&-"], capture_output=True, text=True
-    )
+    done = subprocess.run(["sh", "-c", f"{sys.executable} -m passo rtl >&-"], capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")

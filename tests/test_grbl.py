@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from passo.failure import BadInputError
 from passo.grbl import Grbl, pseudo_terminal, serve
 from passo.machine_file import read_machine
 from passo.run import open_engine, parameters_for
@@ -208,3 +209,22 @@ def test_the_pseudo_terminal(tmp_path: Path, session: Session) -> None:
             thread.join()
     assert b"[VER:1.1h" in said and b"Grbl 1.1h" in said
     assert not link.exists()
+
+
+def test_the_name_of_a_pseudo_terminal(tmp_path: Path) -> None:
+    """A link of an earlier one is replaced, and is not removed when that one ends; nothing else is touched."""
+    link, kept = tmp_path / "grbl", tmp_path / "kept"
+    with pseudo_terminal(link):
+        first = os.readlink(link)
+        with pseudo_terminal(link):
+            second = os.readlink(link)
+            link.unlink()
+            link.symlink_to(first)
+        assert os.readlink(link) == first != second
+    assert not link.exists()
+    kept.write_text("kept")
+    link.symlink_to(kept)
+    for path in (link, kept, tmp_path):
+        with pytest.raises(BadInputError, match="this is no link to a terminal"), pseudo_terminal(path):
+            pass
+    assert link.is_symlink() and kept.read_text() == "kept"

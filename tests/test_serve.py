@@ -111,6 +111,17 @@ def test_what_it_refuses(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     ]
 
 
+def test_a_place_that_is_no_socket(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """What is there stays as it is."""
+    (tmp_path / "file").write_text("kept")
+    (tmp_path / "link").symlink_to("nowhere")
+    for name in ("file", "link", "."):
+        path = tmp_path / name
+        assert main(["serve", str(path)]) == BAD_INPUT
+        assert capsys.readouterr().err == f"{path}: this is no socket: choose another path\n"
+    assert (tmp_path / "file").read_text() == "kept" and (tmp_path / "link").is_symlink()
+
+
 def test_a_second_server_at_a_socket(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """It is refused while the first one lives; what a dead one has left is replaced."""
     path = tmp_path / "core"

@@ -200,16 +200,20 @@ def serve(grbl: Grbl, terminal: int, until: Callable[[], bool] = lambda: False) 
 def pseudo_terminal(link: FilePath) -> Any:
     """Open a pseudo-terminal under a name; yields its other end."""
     ours, theirs = os.openpty()
+    name = os.ttyname(theirs)
     tty.setraw(theirs)
     try:
-        if link.is_symlink():
+        if link.is_symlink() and FilePath(os.readlink(link)).parent == FilePath(name).parent:
             link.unlink()
-        link.symlink_to(os.ttyname(theirs))
+        elif os.path.lexists(link):
+            raise BadInputError(f"{link}: this is no link to a terminal: choose another path")
+        link.symlink_to(name)
     except OSError as error:
         raise BadInputError(f"{link}: {error.strerror}") from None
     try:
         yield ours
     finally:
-        link.unlink(missing_ok=True)
+        if link.is_symlink() and os.readlink(link) == name:  # not that of a later one
+            link.unlink()
         os.close(theirs)
         os.close(ours)

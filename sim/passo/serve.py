@@ -6,6 +6,7 @@ time the core follows the clock of this computer.
 """
 
 import contextlib
+import os
 import selectors
 import socket
 import struct
@@ -183,6 +184,8 @@ def _listen(path: Path) -> socket.socket:
                 probe.connect(str(path))
                 raise BadInputError(f"{path}: another program serves there: end it, or choose another path")
             path.unlink()
+        elif os.path.lexists(path):
+            raise BadInputError(f"{path}: this is no socket: choose another path")
         listener.bind(str(path))
     except OSError as error:
         listener.close()
