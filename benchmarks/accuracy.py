@@ -6,6 +6,7 @@ Prints a table and writes build/accuracy.json, docs/reference/accuracy.md and do
 
 import argparse
 import math
+import sys
 import time
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
@@ -15,7 +16,8 @@ from typing import Any
 from passo import native
 from passo.build import model_library
 from passo.console import console, progress
-from passo.output import write_json, write_text
+from passo.ending import ended
+from passo.output import check_results, write_json, write_text
 from passo.toolchain import paths
 from rich.console import Console
 
@@ -142,6 +144,7 @@ def gather(measured: Measured, named: list[Result]) -> dict[str, Any]:
 
 def accuracy(cases: int = CASES, seed: int = SEED) -> dict[str, Any]:
     """Measure, print, write the report, the page and the picture."""
+    check_results(REPORT, PAGE, PICTURE)
     began = time.monotonic()
     for build in (native.planner, model_library, passo_side.library):  # before workers start
         build()
@@ -180,4 +183,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(ended(main))

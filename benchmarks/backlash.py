@@ -9,6 +9,7 @@ follows a motor as far as the play lets it. The distance to the center counts af
 
 import argparse
 import math
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +18,7 @@ import numpy as np
 from passo import registers as r
 from passo.build import Parameters
 from passo.console import cancelable, console, progress, table
+from passo.ending import ended
 from passo.engine import model_engine
 from passo.host import Channel, PinTiming
 from passo.link import Link
@@ -165,4 +167,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(ended(main))

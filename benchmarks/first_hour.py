@@ -23,7 +23,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from passo.console import console, stages, table
-from passo.output import make_folder, write_bytes, write_json, write_text
+from passo.ending import ended
+from passo.output import check_results, make_folder, write_bytes, write_json, write_text
 from passo.toolchain import paths
 
 from benchmarks import page, play, preview
@@ -227,6 +228,7 @@ def main() -> int:
     if chosen.short:
         figures = measure_short(stages())
     else:
+        check_results(KEPT, PAGE)
         parts = PARTS | ({"hour": lambda tell: hour_of(chosen.hour, tell)} if chosen.hour else {})
         wanted = ["hour"] if chosen.hour and not chosen.parts else chosen.parts
         figures = measure(stages(), wanted, chosen.again, parts)
@@ -239,4 +241,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(ended(main))

@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 
 from passo import random_cases
 from passo.console import cancelable, each
+from passo.ending import ended
 
 from benchmarks import gcode_expand
 from benchmarks.gcode_motion import Played, verdict
@@ -92,4 +93,4 @@ def _count(
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(ended(main))

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from passo.console import cancelable, each
+from passo.ending import ended
 from passo.expand.expander import Options, expand_file
 from passo.expand.follow import follow
 from passo.expand.height_map import ERROR, HeightMap
@@ -103,4 +104,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(ended(main))

@@ -16,6 +16,7 @@ import numpy as np
 from passo.build import Parameters
 from passo.console import stages
 from passo.driver import Driver
+from passo.ending import ended
 from passo.engine import AroundEngine, Engine, model_engine, moves_of
 from passo.native import ffi
 from passo.path import PathAxis, PathSettings
@@ -261,4 +262,4 @@ def good(found: Figures) -> bool:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(ended(main))

@@ -18,7 +18,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from passo.console import cancelable, stages
-from passo.output import write_text
+from passo.ending import ended
+from passo.output import check_results, write_text
 from passo.toolchain import paths, short
 
 from benchmarks import hosts, linuxcnc, servo
@@ -239,6 +240,7 @@ def main() -> int:
     parser.add_argument("--only", nargs="+", choices=PARTS, default=list(PARTS))
     parser.add_argument("--page", action="store_true", help="only write the page")
     given = parser.parse_args()
+    check_results(PAGE, RESULTS / f"{given.only[0]}.json")
     tell = stages()
     with cancelable() as work:
         for part in [] if given.page else given.only:
@@ -253,4 +255,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(ended(main))

@@ -17,8 +17,9 @@ from typing import Any
 import numpy as np
 from passo.cli import main as passo
 from passo.console import stages
+from passo.ending import ended
 from passo.failure import Failure
-from passo.output import make_folder, write_json
+from passo.output import check_results, make_folder, write_json
 from passo.toolchain import paths
 
 from tests.helpers.browser import Browser
@@ -97,6 +98,7 @@ def hour(seconds: int, processor: int, megabytes: int) -> dict[str, Any]:
 
 def main() -> int:
     """Of the command."""
+    check_results(OUT / "hour.json")
     found = hour(*map(int, sys.argv[1:4]))
     make_folder(OUT)
     write_json(found, OUT / "hour.json")
@@ -105,4 +107,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(ended(main))

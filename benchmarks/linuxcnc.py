@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from passo.console import stages
+from passo.ending import ended
 from passo.engine import moves_of
 
 from benchmarks.servo import CLOCK_HZ, LATE, PERIOD, passes
@@ -263,4 +264,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(ended(main))

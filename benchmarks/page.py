@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from passo.console import console, table
+from passo.ending import ended
 from passo.web import build
 
 from benchmarks.play_case import rosette
@@ -113,4 +114,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(ended(main))

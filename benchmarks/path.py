@@ -14,7 +14,8 @@ from typing import Any
 
 from passo.axis_judge import Marks, shares
 from passo.console import console, each, table
-from passo.output import write_json
+from passo.ending import ended
+from passo.output import check_results, write_json
 from passo.path import LOOK_AHEAD, PathAxis, PathSettings
 from passo.path_rounding import Line
 from passo.toolchain import paths
@@ -156,6 +157,8 @@ def shapes() -> list[Soft]:
 
 def main(paths_wanted: int = path_adversary.PATHS) -> None:
     """Measure, print and write the report."""
+    whole = paths_wanted >= path_adversary.PATHS
+    check_results(path_page.REPORT, *[path_page.PAGE] * whole)
     results = []
     for name, case in each("paths", CASES.items()):
         console.print(f"{name[0].upper()}{name[1:]} ...")
@@ -181,7 +184,7 @@ def main(paths_wanted: int = path_adversary.PATHS) -> None:
     }
     write_json(report, path_page.REPORT)
     console.print(f"Report: {path_page.REPORT.relative_to(paths.root)}")
-    if paths_wanted >= path_adversary.PATHS:
+    if whole:
         path_page.write(report)
     if not report["met"]:
         raise SystemExit("a goal is missed")
@@ -215,4 +218,4 @@ def show(results: Sequence[Result], shaped: Sequence[Soft], circle: float) -> No
 
 
 if __name__ == "__main__":
-    main(*map(int, sys.argv[1:]))
+    sys.exit(ended(lambda: main(*map(int, sys.argv[1:]))))

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from passo.console import console, progress
+from passo.ending import ended
 from passo.output import write_text
 from passo.toolchain import paths
 
@@ -199,4 +200,4 @@ def main(words: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    sys.exit(ended(lambda: main(sys.argv[1:])))

@@ -7,12 +7,14 @@ writes it again from build/path.json.
 """
 
 import json
+import sys
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
 from pathlib import Path
 from typing import Any
 
 from passo.axis_judge import BOUND, JERK_BOUND
+from passo.ending import ended
 from passo.output import write_text
 from passo.path import LOOK_AHEAD
 from passo.toolchain import paths
@@ -115,4 +117,4 @@ def write(report: Mapping[str, Any]) -> None:
 
 
 if __name__ == "__main__":
-    write(json.loads(REPORT.read_text(encoding="utf-8")))
+    sys.exit(ended(lambda: write(json.loads(REPORT.read_text(encoding="utf-8")))))

@@ -8,12 +8,14 @@ one decision of the planner makes the difference: where a ramp ends, or how a pa
 """
 
 import json
+import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from passo.console import each
-from passo.output import write_text
+from passo.ending import ended
+from passo.output import check_results, write_text
 from passo.path import PathSettings
 
 from benchmarks.path_measure import FAST_POLLS
@@ -64,6 +66,7 @@ def read() -> dict[str, Kept]:
 
 def main() -> None:
     """Solve all of them."""
+    check_results(KEPT)
     found = {
         name: {"seconds": round(kept.solved(), 6), "case": kept.case.to_json()}
         for name, kept in each("paths solved", read().items())
@@ -73,4 +76,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(ended(main))

@@ -10,6 +10,7 @@ judge: a wrong plan can be on record.
 
 import cmath
 import json
+import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -19,9 +20,10 @@ from pathlib import Path
 
 from passo.campaign_moves import draw, to_toml
 from passo.console import console
+from passo.ending import ended
 from passo.move_file import parse_channels
 from passo.moves import MoveFileError
-from passo.output import write_text
+from passo.output import check_results, write_text
 from passo.path import PathAxis, PathSettings
 from passo.path_rounding import Line
 from passo.plan import plan_channels
@@ -146,6 +148,7 @@ def read() -> dict[str, Entry]:
 
 def main() -> None:
     """Write it, and show what is not as before."""
+    check_results(RECORD)
     before = read() if RECORD.exists() else {}
     now = {name: made() for name, made in entries().items()}
     rows = ",\n".join(
@@ -161,4 +164,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(ended(main))

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from passo.console import console, stages, table
+from passo.ending import ended
 from passo.toolchain import paths
 
 BEFORE = "f7a6a7b"  # frames clock by clock, a poll in each millisecond
@@ -118,4 +119,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(ended(main))

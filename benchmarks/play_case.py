@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from passo.ending import ended
 
 RADIUS, WAVES = 30, ((12, 5.03), (4, 17.0))  # mm, of the rosette, and waves per turn
 SLOW = 1500  # mm/min
@@ -138,4 +139,4 @@ def hash_of(values: Sequence[Any]) -> str:
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(ended(main))

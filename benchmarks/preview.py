@@ -15,6 +15,7 @@ import tempfile
 from pathlib import Path
 
 from passo.console import console, stages, table
+from passo.ending import ended
 from passo.toolchain import paths
 
 from benchmarks.play_case import circles, rosette, zigzag
@@ -76,4 +77,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(ended(main))

@@ -17,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 from passo.console import progress
+from passo.ending import ended
 from passo.engine import NUMBERS
 from passo.machine_file import read_machine
 from passo.part import Played, core_of, play_part, read_part
@@ -167,4 +168,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(ended(main))

@@ -21,6 +21,7 @@ import numpy as np
 from passo.build import Parameters
 from passo.console import stages
 from passo.driver import Driver, DriverError
+from passo.ending import ended
 from passo.engine import Engine, model_engine, moves_of
 from passo.native import ffi, planner
 from passo.registers import Cause
@@ -606,4 +607,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(ended(main))

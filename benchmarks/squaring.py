@@ -19,9 +19,10 @@ import numpy as np
 from passo.build import Parameters
 from passo.console import cancelable, console, in_turn, leave_interrupts, progress
 from passo.driver import Driver
+from passo.ending import ended
 from passo.engine import EVENT, NUMBERS, AroundEngine, model_engine, moves_of
 from passo.native import ffi
-from passo.output import write_text
+from passo.output import check_results, write_text
 from passo.random_cases import log_uniform
 from passo.registers import TriggerSource
 from passo.toolchain import paths
@@ -294,6 +295,7 @@ with a switch pressed, {shared} have one switch for all motors.
 def main(words: list[str]) -> None:
     """Run, print, write."""
     runs, seed = ([int(word) for word in words] + [RUNS, 1][len(words) :])[:2]
+    check_results(*[PAGE] * (runs >= RUNS))
     rng, bad = random.Random(seed), 0
     gantries = [gantry_of(rng) for _ in range(runs)]
     worst = {"square": 0.0, "late": 0.0, "racking": 0.0, "passed": 0.0}
@@ -325,4 +327,4 @@ def main(words: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    sys.exit(ended(lambda: main(sys.argv[1:])))

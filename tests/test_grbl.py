@@ -212,7 +212,7 @@ def test_the_pseudo_terminal(tmp_path: Path, session: Session) -> None:
 
 
 def test_the_name_of_a_pseudo_terminal(tmp_path: Path) -> None:
-    """A link of an earlier one is replaced, and is not removed when that one ends; nothing else is touched."""
+    """A link of an earlier one is replaced, and stays when that one ends; nothing else is touched."""
     link, kept = tmp_path / "grbl", tmp_path / "kept"
     with pseudo_terminal(link):
         first = os.readlink(link)

@@ -19,6 +19,7 @@ import pytest
 from passo import bench, cli, console
 from passo.campaign import Campaign, carry_out
 from passo.campaign_cluster import local_cluster
+from passo.ending import INTERRUPTED
 from passo.engine import Engine
 from passo.toolchain import paths
 
@@ -176,7 +177,7 @@ def test_the_speeds_of_the_engines_when_they_are_interrupted(
 ) -> None:
     """Those that are measured are shown; the status is that of an interrupt."""
     monkeypatch.setattr(bench.Measurement, "clocks_per_second", interrupt_after(2, lambda _: 3e6))
-    assert cli.main(["bench"]) == cli.INTERRUPTED
+    assert cli.main(["bench"]) == INTERRUPTED
     said = capsys.readouterr()
     assert said.out.count("3.0 M") == 2 and "canceled" in said.err
 
@@ -353,7 +354,7 @@ def test_a_run_of_moves_that_is_interrupted(
     )
     monkeypatch.setattr(Engine, "run", interrupt_after(12, Engine.run))
     words = ["run", str(path), "--engine", "model", "--out", str(out), "--plot", "--report"]
-    assert cli.main(words) == cli.INTERRUPTED
+    assert cli.main(words) == INTERRUPTED
     assert "canceled after" in capsys.readouterr().err
     summary = json.loads((out / "summary.json").read_text())
     assert not summary["ok"] and summary["problems"][0].startswith("canceled after")

@@ -12,7 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from passo import Machine
-from passo.cli import BAD_INPUT, main
+from passo.cli import main
+from passo.ending import BAD_INPUT
 from passo.engine import EVENT, moves_of
 from passo.grbl_setup import machine_at
 from passo.machine_file import read_machine

@@ -20,6 +20,7 @@ from dataclasses import dataclass
 from passo.build import rtl_sources
 from passo.compiler import sources
 from passo.console import console, table
+from passo.ending import ended
 
 from verify.equal.coupling import couplings
 from verify.equal.wiring import MODULES as WIRED
@@ -130,4 +131,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(ended(main))

@@ -2,60 +2,27 @@
 """The command `passo`. Subcommands import lazily, so that `passo --help` is fast."""
 
 import argparse
-import io
 import sys
 from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
 from passo import __version__, campaign_options, console_options, expand_options, part_options, serve_options
-from passo.failure import BadInputError, Failure
-from passo.output import BROKEN_PIPE, FULL, drop_output, release_folders
+from passo.ending import FAILED, INTERRUPTED, OK, ended
+from passo.failure import BadInputError
 
 PART_SUFFIXES = (".nc", ".ngc", ".gcode", ".tap")
 LINES_MAX = 1_000_000  # of the long file of `passo firmware --grbl`
-OK, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; return its exit status.
+    """Run the command; return its exit status (passo.ending)."""
 
-    0 success, 1 mismatch or fault, 2 invalid input, 130 interrupted, 141 nobody reads its output any more.
-    """
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):  # not if the shell has closed it
-            stream.reconfigure(errors="replace")  # of a terminal that lacks a letter
-    try:
-        try:
-            return _command(arguments)
-        finally:
-            if sys.stdout:  # not if the shell has closed it
-                sys.stdout.flush()
-    except BrokenPipeError:
-        drop_output()
-        return BROKEN_PIPE
-    except OSError as error:  # all others have their own words
-        drop_output()
-        place = error.filename or ("standard output or a temporary file" if error.errno in FULL else "")
-        reason = error.strerror or str(error)
-        print(f"{place}: {reason}" if place else reason, file=sys.stderr)
-        return FAILED
-
-
-def _command(arguments: Sequence[str] | None) -> int:
-    options = _parser().parse_args(arguments)
-    try:
+    def command() -> int:
+        options = _parser().parse_args(arguments)
         return options.command(options)
-    except BadInputError as error:
-        print(error, file=sys.stderr)
-        return BAD_INPUT
-    except Failure as error:
-        print(error, file=sys.stderr)
-        return FAILED
-    except KeyboardInterrupt:
-        return INTERRUPTED
-    finally:
-        release_folders()
+
+    return ended(command)
 
 
 def _parser() -> argparse.ArgumentParser:

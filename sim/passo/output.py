@@ -39,6 +39,12 @@ def check_file(path: Path, option: str, makes: bool = False) -> None:
             _check_folder(path.resolve().parent, makes)
 
 
+def check_results(*files: Path) -> None:
+    """The same of files whose places are fixed; their folders are made."""
+    for path in files:
+        check_file(path, "result", makes=True)
+
+
 def check_folder(folder: Path, option: str) -> None:
     """The same of a folder for results."""
     with _refused(folder, option):

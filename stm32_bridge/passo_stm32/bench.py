@@ -8,7 +8,7 @@ from passo.build import Parameters
 from passo.console import console, stages
 from passo.engine import model_engine
 from passo.link import error_name
-from passo.output import write_text
+from passo.output import check_results, write_text
 from passo.toolchain import paths
 
 from passo_stm32.board import Board, make_firmware, program_elf
@@ -191,6 +191,7 @@ def memory_report() -> str:
 
 def bench() -> None:
     """Measure, write docs/reference/firmware_report.md and show it."""
+    check_results(REPORT)
     tell = stages()
     tell("firmware: planning")
     costs = plan_costs()

@@ -10,7 +10,7 @@ import numpy as np
 from passo.build import Parameters
 from passo.console import stages
 from passo.engine import model_engine
-from passo.output import write_text
+from passo.output import check_results, write_text
 from passo.toolchain import paths
 
 from passo_stm32.board import make_firmware
@@ -123,6 +123,7 @@ def memory() -> str:
 
 def bench(count: int = LINES, report: Path = REPORT) -> None:
     """Measure, write docs/reference/firmware_gcode_report.md and show it."""
+    check_results(report)
     tell = stages()
     tell("firmware: calls")
     calls = costs()

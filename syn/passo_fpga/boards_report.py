@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from passo.console import console, stages, table
+from passo.output import check_results
 
 from passo_fpga.boards import OSCILLATOR, Board, boards
 from passo_fpga.devices import SPI_MHZ
@@ -84,6 +85,7 @@ def row(chosen: Router, placed: Sequence[Placed]) -> Row:
 
 def report(names: Sequence[str]) -> None:
     """Measure boards, write and print their rows."""
+    check_results(PAGE)
     tell, known = stages(), boards()
     shown = table(f"{AXES} axes on boards", *HEADER)
     for name in names:

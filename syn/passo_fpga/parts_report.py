@@ -14,7 +14,7 @@ from functools import partial
 from typing import Any
 
 from passo.console import Estimate, console, stages, table
-from passo.output import write_json
+from passo.output import check_results, write_json
 from passo.toolchain import paths
 
 from passo_fpga.design import Design, core
@@ -105,6 +105,7 @@ def _clocks(pool: ThreadPoolExecutor, tell: Any) -> list[dict[str, Any]]:
 
 def report(names: Sequence[str], whole: bool) -> None:
     """Measure and print; write the page if all devices were measured."""
+    check_results(REPORT, *[PAGE] * whole)
     found = measure(names)
     write_json(found, REPORT)
     for title, header, rows in _tables(found):

@@ -20,8 +20,9 @@ from threading import Lock
 from typing import Any, NamedTuple
 
 from passo.console import Estimate, console, stages
+from passo.ending import ended
 from passo.failure import Failure
-from passo.output import write_json
+from passo.output import check_results, write_json
 from passo.toolchain import paths
 
 from passo_fpga import boards_report, pages, parts_report
@@ -108,8 +109,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     goals = [goal.key for goal in GOALS if goal.device in chosen]
     tops = [*product(chosen, (SPI,), SIZES), *product(chosen, BUS_TOPS, (TOP_SIZE,))]
     others = [] if options.quick else [Key(*each) for each in tops]
+    part = REPORT.with_name("report-part.json")
     whole = not options.quick and set(chosen) == set(DEVICES)
     try:
+        check_results(*([REPORT, pages.PAGE] if whole else [part]))
         report = measure(
             list(dict.fromkeys(goals if options.quick else goals + others)), splits=not options.quick
         )
@@ -120,7 +123,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         write_json(report, REPORT)
         pages.write(report)
     else:
-        part = REPORT.with_name("report-part.json")
         write_json(report, part)
         unchanged = pages.PAGE.relative_to(paths.root)
         console.print(f"partial report: {part.relative_to(paths.root)}; {unchanged} is unchanged")
@@ -265,4 +267,4 @@ def _row(design: Design, key: Key, placed: Sequence[Placed]) -> dict[str, Any]:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(ended(main))

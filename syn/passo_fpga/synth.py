@@ -11,6 +11,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from passo.console import console, stages, table
+from passo.ending import ended
 from passo.toolchain import paths
 
 from passo_fpga import parts
@@ -217,4 +218,4 @@ def problems_of(placed: Placed, mhz: float) -> tuple[str, ...]:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(ended(main))

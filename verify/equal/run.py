@@ -17,8 +17,9 @@ from dataclasses import asdict, dataclass
 from multiprocessing import get_context
 
 from passo.console import Estimate, console, table
+from passo.ending import ended
 from passo.failure import Failure
-from passo.output import make_folder, write_json
+from passo.output import check_results, make_folder, write_json
 from passo.toolchain import paths
 
 from verify.equal import page
@@ -101,6 +102,8 @@ def main() -> None:
         parser.error(f"no such module: {', '.join(sorted(unknown))}")
     chosen = [coupling for coupling in known if not arguments.module or coupling.name in arguments.module]
 
+    report_file = paths.build / "equal.json"
+    check_results(report_file, *[page.PAGE] * (chosen == known))
     begin = time.monotonic()
     results = run_all(chosen, arguments.jobs)
     made = table("Model and RTL", "module", "goals", "bits", "prove", "fault", "result")
@@ -127,11 +130,11 @@ def main() -> None:
     found = [asdict(result) for result in results]
     report = {"results": found, "proved_bits": proved, "bits": all_bits, "seconds": seconds}
     make_folder(BUILD)
-    write_json(report, paths.build / "equal.json")
+    write_json(report, report_file)
     if good and chosen == known:
         page.write(chosen, report)
     sys.exit(not good)
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(ended(main))

@@ -22,6 +22,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from passo.console import Estimate, console, table
+from passo.ending import ended
 from passo.output import write_text
 from passo.toolchain import environment, paths
 
@@ -339,4 +340,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(ended(main))

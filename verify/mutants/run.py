@@ -17,7 +17,10 @@ import time
 from collections.abc import Collection, Sequence
 
 from passo.console import Estimate, console
+from passo.ending import ended
+from passo.output import check_results
 
+from verify import page as modules_page
 from verify.mutants import (
     c_equal,
     c_judge,
@@ -40,7 +43,7 @@ from verify.mutants import (
 )
 from verify.mutants.fates import Fates, hash_of
 from verify.mutants.netlist import CORES, MOST, Core, Mutant, drawn, first_of, library
-from verify.mutants.page import Score, scores, show_table, write
+from verify.mutants.page import PAGE, Score, scores, show_table, write
 from verify.soak.program import build as program
 
 SEED = 1
@@ -126,6 +129,9 @@ def main() -> None:
     parser.add_argument("--page", action="store_true", help="only write the page, from what is known")
     arguments = parser.parse_args()
     only = [name for name in arguments.only.split(",") if name]
+    drawn = (arguments.seed, arguments.each, arguments.count)
+    whole = not only or drawn == (SEED, EACH, COUNT)
+    check_results(*[PAGE, modules_page.PAGE] * whole)
     began = time.monotonic()
     rtl: list[Score] = []
     c: list[Score] = []
@@ -143,8 +149,7 @@ def main() -> None:
         _say(f"C: done, {estimate.counted(parts)}")
     show_table(rtl, c)
     _say(f"{time.monotonic() - began:.0f} s")
-    drawn = (arguments.seed, arguments.each, arguments.count)
-    if not only or drawn == (SEED, EACH, COUNT):
+    if whole:
         write(rtl, c, arguments.seed)
     for case in rtl_judge.unfair:
         _say(f"the judge finds fault with the core itself: {case}")
@@ -152,4 +157,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(ended(main))

@@ -17,13 +17,14 @@ from collections.abc import Sequence
 from typing import Any
 
 from passo.build import rtl_library
-from passo.output import write_json
+from passo.ending import ended
+from passo.output import check_results, write_json
 from passo.toolchain import paths
 
 from verify.soak import trackers
 from verify.soak.defects import catch_all
 from verify.soak.numbers import measure
-from verify.soak.page import write
+from verify.soak.page import PAGE, write
 from verify.soak.parts import (
     DRIVER_SET,
     SETS,
@@ -64,6 +65,7 @@ PARTS = ("model", "driver", *DRIVER_KINDS, "verilator", "icarus", *KINDS, "track
 
 def soak(seed: int, only: Sequence[str], scale: float, jobs: int) -> bool:
     """Play all selected parts; return whether everything passed."""
+    check_results(REPORT, *[PAGE] * (seed == 1))
     program = build()
     wanted = {name: max(1, round(number * scale)) for name, number in HISTORIES.items()}
     parts = []
@@ -142,4 +144,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(ended(main))
