@@ -18,6 +18,10 @@ FILES = {
     "binary": b"\xff\xfe\0\x81",
     "deep": b"a=" + 5000 * b"[" + 5000 * b"]",
     "part.nc": b"G0 X1\n",
+    "part.gc": b"G0 X1\n",
+    "wide.nc": "G0 X1\n".encode("utf-16"),
+    "controls.nc": b"#1=2\nG0 \xc2\x9b\n",
+    "table.csv": b"k,point\n",
     "moves.toml": (paths.examples / "cosine.toml").read_bytes(),
     "infinite": GRID.format("0,0,1e400").encode(),
     "far": GRID.format("0,0,1e300").encode(),
@@ -28,6 +32,9 @@ FILES = {
 TEXT, PLACE = "not a UTF-8 text file", "x,y,z must be within 100,000 mm"
 PICTURE = "the name must end in .png, .svg or .pdf"
 PROBE = "--probe takes 4 numbers of up to 100,000 mm with commas between them, not ''"
+READS = "the command reads this file: choose another one"
+CONTROLS = """controls.nc:2: '\ufffd' is no word: write a letter and a value (NIST)"""
+ROUTER = shlex.quote(str(paths.examples / "machines" / "router.toml"))
 TOOL = "a tool needs a whole number (LinuxCNC)"
 CASES = {
     "firmware binary --engine model": f"binary: {TEXT}",
@@ -49,6 +56,17 @@ CASES = {
     f"preview part.nc {MACHINE} --tools fraction": f"fraction:1: T1.5: {TOOL}",
     "expand part.nc --tools negative": f"negative:1: T-5: {TOOL}",
     "run moves.toml --from 0": "--from is for G-code: .nc, .ngc, .gcode, .tap",
+    f"run moves.toml {MACHINE}": "--machine is for G-code: .nc, .ngc, .gcode, .tap",
+    f"run part.gc {MACHINE} --from -1": "--from -1: lines count from 1, the first one first",
+    f"preview part.nc {MACHINE} --from 5 --to 2": "--from 5 --to 2: lines count from 1, the first one first",
+    f"run wide.nc {MACHINE}": "wide.nc: the file is UTF-16: save it as UTF-8",
+    "expand wide.nc": "wide.nc: the file is UTF-16: save it as UTF-8",
+    "expand controls.nc": CONTROLS,
+    "expand part.nc --out part.nc": f"--out part.nc: {READS}",
+    "heightmap part.nc --map infinite --out ./infinite": f"--out infinite: {READS}",
+    "shape --csv table.csv --out table.csv": f"--out table.csv: {READS}",
+    "shape --formula u --out p.png": "--out p.png: the name must end in .csv or .toml",
+    f"check {ROUTER} --port part.nc": "part.nc: this is no serial port",
 }
 
 

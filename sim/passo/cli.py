@@ -125,7 +125,8 @@ def _parser() -> argparse.ArgumentParser:
 
 def _run(options: argparse.Namespace) -> int:
     first = options.moves[0]
-    if first.suffix.lower() in PART_SUFFIXES or str(first) == "-":
+    named = first.suffix.lower() in PART_SUFFIXES or str(first) == "-"
+    if named or (options.machine and first.suffix.lower() != ".toml"):
         from passo.part_command import Asked, run_part
 
         asked = Asked(
@@ -188,7 +189,9 @@ def _shape(options: argparse.Namespace) -> int:
 
     for option in ("out", "plot"):
         if path := getattr(options, option):
-            check_file(path, f"--{option}")
+            check_file(path, f"--{option}", reads=[options.csv])
+    if options.out:
+        shape.check_table(options.out)
     if options.plot:
         shape.check_picture(options.plot)
     points = (

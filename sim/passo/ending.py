@@ -9,6 +9,7 @@ from passo.failure import BadInputError, Failure
 from passo.output import BROKEN_PIPE, FULL, drop_output, release_folders
 
 OK, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+CONTROLS = {code: "\ufffd" for code in (*range(32), *range(127, 160)) if chr(code) not in "\n\t"}
 
 
 def ended(command: Callable[[], int | None]) -> int:
@@ -40,12 +41,17 @@ def _called(command: Callable[[], int | None]) -> int:
     try:
         return command() or OK
     except BadInputError as error:
-        print(error, file=sys.stderr)
+        _tell(error)
         return BAD_INPUT
     except Failure as error:
-        print(error, file=sys.stderr)
+        _tell(error)
         return FAILED
     except KeyboardInterrupt:
         return INTERRUPTED
     finally:
         release_folders()
+
+
+def _tell(error: Exception) -> None:
+    """What it quotes of a file must not command the terminal."""
+    print(str(error).translate(CONTROLS), file=sys.stderr)

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: MIT
 """Python binding of the G-code interpreter (c_model/gcode/passo_gcode.h)."""
 
+import codecs
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from passo.failure import Failure
+from passo.failure import BadInputError, Failure
 from passo.native import ffi, planner, unopened
 
 NANOMETERS = 1_000_000  # per millimeter
@@ -82,6 +83,12 @@ def set_tool_lengths(gcode: Any, lengths: Mapping[int, float]) -> None:
     for tool, length in lengths.items():
         if 1 <= tool <= len(table):
             table[tool - 1] = round(length * NANOMETERS)
+
+
+def check_text(name: object, data: bytes) -> None:
+    """Refuse what is no G-code, whatever its lines are. Raises BadInputError."""
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        raise BadInputError(f"{name}: the file is UTF-16: save it as UTF-8")
 
 
 def lines(text: bytes) -> list[bytes]:

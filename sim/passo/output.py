@@ -25,12 +25,14 @@ def refusal(path: Path, error: OSError) -> Failure | BadInputError:
     return Failure(text) if error.errno in FULL else BadInputError(text)
 
 
-def check_file(path: Path, option: str, makes: bool = False) -> None:
+def check_file(path: Path, option: str, makes: bool = False, reads: Iterable[Path | None] = ()) -> None:
     """Refuse a file that cannot be written, before the work for it begins. Raises BadInputError.
 
-    `makes`: its folder is made if it is missing.
+    `makes`: its folder is made if it is missing; `reads`: files that the command reads, which it must not be.
     """
     with _refused(path, option):
+        if path.is_file() and any(one and one.exists() and path.samefile(one) for one in reads):
+            raise BadInputError(f"{option} {path}: the command reads this file: choose another one")
         if path.is_dir():
             raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
         if path.exists() and not path.is_file():

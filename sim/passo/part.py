@@ -20,7 +20,7 @@ from passo.expand.place import Place, ProgramError, listed
 from passo.expand.refusals import SLOW
 from passo.expand.tools import Tool, lengths
 from passo.failure import BadInputError
-from passo.gcode import NANOMETERS, GcodeError, has_words, lines
+from passo.gcode import NANOMETERS, GcodeError, check_text, has_words, lines
 from passo.host_loop import HostLoop
 from passo.machine_file import MachineFile
 from passo.native import ffi
@@ -220,6 +220,7 @@ def _read(
     except OSError as error:
         raise BadInputError(f"{path}: {error.strerror}") from None
     name = STDIN if path == STANDARD_INPUT else path
+    check_text(name, data)
     text = lines(data)
     if surface or needs_expanding(data):
         options = Options(machine.gcode, tools, at_zero=True, surface=surface, begin=begin)

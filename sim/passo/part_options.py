@@ -56,7 +56,8 @@ def lines_of(options: argparse.Namespace) -> "Lines | None":
     if options.first is None and last is None:
         return None
     if first < 1 or (last is not None and last < first):
-        raise BadInputError(f"--from {first} --to {last}: lines count from 1, the first one first")
+        to = "" if last is None else f" --to {last}"
+        raise BadInputError(f"--from {first}{to}: lines count from 1, the first one first")
     return Lines(first, last)
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A serial port of this computer, to the firmware of an STM32F103."""
 
+import errno
 import fcntl
 import os
 import re
@@ -94,7 +95,8 @@ class SerialPort:
             raise BadInputError(f"{path}: another program holds it: end that program first") from None
         except (OSError, termios.error) as error:
             self.close()
-            raise BadInputError(f"{path}: {error.args[-1]}") from None
+            reason = "this is no serial port" if error.args[0] == errno.ENOTTY else error.args[1]
+            raise BadInputError(f"{path}: {reason}") from None
 
     def __enter__(self) -> Self:
         return self

@@ -175,7 +175,7 @@ def _curve(rows: list[list[str]]) -> Callable[[float], float]:
 
 def write_table(points: Sequence[int], path: Path) -> None:
     """Write a table as CSV, or as TOML if the file name ends in .toml."""
-    if path.suffix == ".toml":
+    if path.suffix.lower() == ".toml":
         rows = (points[k : k + 8] for k in range(0, POINTS, 8))
         lines = "".join(f"    {', '.join(map(str, row))},\n" for row in rows)
         mean = check(points).mean
@@ -189,6 +189,12 @@ def write_table(points: Sequence[int], path: Path) -> None:
 def table_text(points: Sequence[int]) -> str:
     """A table as CSV."""
     return "k,point\n" + "".join(f"{k},{point}\n" for k, point in enumerate(points))
+
+
+def check_table(path: Path) -> None:
+    """Raises BadInputError if there are no tables of that name."""
+    if path.suffix.lower() not in (".csv", ".toml") and (path.is_file() or not path.exists()):  # no device
+        raise BadInputError(f"--out {path}: the name must end in .csv or .toml")
 
 
 def check_picture(path: Path) -> None:

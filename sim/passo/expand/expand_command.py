@@ -47,7 +47,8 @@ def run_height_map(asked: argparse.Namespace) -> None:
 
 def _check_out(asked: argparse.Namespace) -> None:
     if asked.out:
-        check_file(asked.out, "--out")
+        reads = (asked.part, asked.machine, asked.tools, getattr(asked, "map", None))
+        check_file(asked.out, "--out", reads=reads)
 
 
 def _refuse(asked: argparse.Namespace, names: Sequence[str], why: str) -> None:

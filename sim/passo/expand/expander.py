@@ -45,7 +45,7 @@ from passo.expand.place import (
 )
 from passo.expand.tools import Tool
 from passo.failure import BadInputError
-from passo.gcode import GcodeError, GcodeSettings, lines
+from passo.gcode import GcodeError, GcodeSettings, check_text, lines
 
 LIMIT = 2_000_000  # lines executed in loops and subroutines
 SUFFIX = ".ngc"
@@ -344,9 +344,11 @@ class _Run:
 
 def _read(path: Path) -> Program:
     try:
-        return read_program(path, _lines(path.read_bytes()))
+        data = path.read_bytes()
     except OSError as error:
         raise BadInputError(f"{path}: {error.strerror}") from None
+    check_text(path, data)
+    return read_program(path, _lines(data))
 
 
 def _lines(text: bytes) -> list[str]:
