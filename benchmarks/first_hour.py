@@ -128,7 +128,7 @@ def hour(tell: Tell) -> Iterator[Figure]:
 
 def hour_of(file: Path, tell: Tell) -> Iterator[Figure]:
     """As the script has written it."""
-    found = json.loads(file.read_text())
+    found = json.loads(file.read_text(encoding="utf-8"))
     tell(f"make demo: {found['seconds']} s, {found['megabytes']} MB")
     command = "sh tools/first_hour.sh"
     yield most("`make demo` in a fresh clone, by the clock", DEMO_SECONDS, found["seconds"], "s", command)
@@ -195,7 +195,7 @@ def measure(
 ) -> list[Figure]:
     """All figures: of the chosen parts now, of the others as they were; see above."""
     head, parts = commit(), parts or PARTS
-    kept = json.loads(KEPT.read_text()) if KEPT.exists() else {}
+    kept = json.loads(KEPT.read_text(encoding="utf-8")) if KEPT.exists() else {}
     for name, part in parts.items():
         known = name in kept and kept[name]["commit"] == head
         if name in chosen or not (chosen or (known and not again)):
@@ -207,7 +207,7 @@ def measure(
 
 def known_all() -> bool:
     """Whether the figures of all parts are kept."""
-    return KEPT.exists() and set(PARTS) <= set(json.loads(KEPT.read_text()))
+    return KEPT.exists() and set(PARTS) <= set(json.loads(KEPT.read_text(encoding="utf-8")))
 
 
 def measure_short(tell: Tell) -> list[Figure]:

@@ -49,7 +49,7 @@ def play_rs274(program: Sequence[str]) -> Played:
             text=True,
             timeout=SECONDS,
         )
-        calls = (folder / "calls").read_text().splitlines()
+        calls = (folder / "calls").read_text(encoding="utf-8").splitlines()
     said = [line for line in done.stderr.splitlines() if line and line != "executing"]
     if done.returncode == 0:
         return Played(list(_motions(calls)))

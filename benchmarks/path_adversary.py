@@ -105,7 +105,7 @@ def kept_batch(folder: Path, seed: int, count: int, machines: Machines) -> Found
     """A batch, or what an earlier run has kept of it."""
     kept = folder / f"{seed}-{count}-{'-'.join(machines)}.json"
     if kept.exists():
-        return found_of(kept.read_text())
+        return found_of(kept.read_text(encoding="utf-8"))
     found = batch(seed, count, machines)
     write_text(kept, found.to_json() + "\n")
     return found

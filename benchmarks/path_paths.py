@@ -115,7 +115,7 @@ def case_of(data: dict[str, Any]) -> Case:
 
 def read_cases(path: Path) -> dict[str, Case]:
     """The kept cases by name."""
-    return {name: case_of(data) for name, data in json.loads(path.read_text()).items()}
+    return {name: case_of(data) for name, data in json.loads(path.read_text(encoding="utf-8")).items()}
 
 
 def write_cases(path: Path, cases: dict[str, Case]) -> None:

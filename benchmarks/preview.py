@@ -33,7 +33,9 @@ def command(name: str, part: Path, machine: Path, folder: Path) -> tuple[float, 
     if done.returncode:
         raise SystemExit(done.stderr)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    summary = json.loads((folder / ("summary.json" if name == "run" else "preview.json")).read_text())
+    summary = json.loads(
+        (folder / ("summary.json" if name == "run" else "preview.json")).read_text(encoding="utf-8")
+    )
     seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
     return seconds, summary["path_seconds"]
 
@@ -67,7 +69,7 @@ def main() -> None:
             tell(f"{part.name}: {long / short:.1f} times as fast as the run, off by {share:.2g}")
             if share > SHARE:
                 raise SystemExit(f"{part.name}: the preview is off by {share:.2%}")
-            count = str(len(part.read_text().splitlines()))
+            count = str(len(part.read_text(encoding="utf-8").splitlines()))
             rows.add_row(part.name, count, f"{short:.2f}", f"{long:.2f}", f"{played:.6g}", f"{share:.2g}")
         seconds, said = planned(lines, folder)
         rows.add_row("rosette.nc", str(lines), f"{seconds:.2f}", "", f"{said:.6g}", "")

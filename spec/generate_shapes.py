@@ -226,7 +226,7 @@ def main() -> int:
 
     stale = 0
     for path, text in files().items():
-        if path.exists() and path.read_text() == text:
+        if path.exists() and path.read_text(encoding="utf-8") == text:
             continue
         if check:
             print(f"{path.relative_to(ROOT)} is out of date: run 'make generate'", file=sys.stderr)

@@ -3,11 +3,14 @@
 
 import os
 import shlex
+import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 from passo.cli import main
-from passo.toolchain import paths
+from passo.toolchain import environment, paths
 
 PART = paths.examples / "gcode"
 MACHINE = f"--machine {shlex.quote(str(PART / 'machine.toml'))}"
@@ -86,3 +89,23 @@ def test_a_mistake_is_a_line(
     said = capsys.readouterr()
     assert (said.err, said.out) == (f"{CASES[command]}\n", "")
     assert sorted(tmp_path.iterdir()) == before
+
+
+def test_names_in_any_code(tmp_path: Path) -> None:
+    """In a locale of ASCII, in which files are read and written as in any other."""
+    names = ["f\u00fcnf", os.fsdecode(b"f\xfcnf")]
+    code = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+    for name in names:
+        moves, part = tmp_path / f"{name}.toml", tmp_path / f"{name}.nc"
+        shutil.copy(paths.examples / "cosine.toml", moves)
+        shutil.copy(PART / "part.nc", part)
+        pages = ["--report", "--plot", "--out", str(tmp_path / name)]
+        for words in (
+            ["run", str(moves), "--engine", "model", *pages],
+            ["run", str(part), *shlex.split(MACHINE), *pages],
+            ["preview", str(part), *shlex.split(MACHINE), *pages[2:]],
+        ):
+            command = [sys.executable, "-m", "passo", *words]
+            done = subprocess.run(command, env=environment() | code, capture_output=True)
+            assert (done.returncode, done.stderr) == (0, b""), done.stderr.decode(errors="replace")
+        assert len(list((tmp_path / name).iterdir())) >= 6

@@ -104,7 +104,7 @@ def name_callers(functions: dict[int, Function], elf: Path, cross: str) -> None:
 def read_calls(paths: Sequence[Path]) -> dict[str, list[str]]:
     """Read the targets of indirect calls: names, by the caller's name."""
     calls: dict[str, list[str]] = {}
-    for line in "\n".join(path.read_text() for path in paths).splitlines():
+    for line in "\n".join(path.read_text(encoding="utf-8") for path in paths).splitlines():
         line = line.partition("#")[0].strip()
         if line:
             caller, _, targets = line.partition(":")

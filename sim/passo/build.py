@@ -241,7 +241,7 @@ def _runtime(waves: bool) -> Path:
 
     def make(folder: Path) -> None:
         empty = folder / "empty.v"
-        empty.write_text("module empty; endmodule\n")
+        empty.write_text("module empty; endmodule\n", encoding="utf-8")
         call(["verilator", *flags, "--Mdir", folder, empty])
         call(["make", "-C", folder, "-f", MAKEFILE, RUNTIME, "OPT_GLOBAL=-O1"])
 

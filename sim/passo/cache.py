@@ -97,7 +97,7 @@ def _damage(folder: Path) -> str | None:
     The digests come first: to load a library that ends too early may kill the process.
     """
     try:
-        listed = json.loads((folder / WHOLE).read_text())
+        listed = json.loads((folder / WHOLE).read_text(encoding="utf-8"))
         whole = listed == _digests(folder)
     except (OSError, ValueError):
         whole = False
@@ -128,7 +128,7 @@ def _lock(path: Path) -> Iterator[None]:
     """Hold a file lock, so that only one process builds the same folder."""
     with _disk():
         path.parent.mkdir(parents=True, exist_ok=True)
-        file = path.open("w")
+        file = path.open("w", encoding="utf-8")
     with file:
         fcntl.flock(file, fcntl.LOCK_EX)
         yield

@@ -106,6 +106,6 @@ def library(name: str, folders: Sequence[Path], files: Sequence[Path], *flags: s
 
 def declarations(files: Iterable[Path]) -> str:
     """Preprocessed headers for cffi, without #include, as it knows the standard types, and inlines."""
-    text = "\n".join(path.read_text() for path in files)
+    text = "\n".join(path.read_text(encoding="utf-8") for path in files)
     dropped = r"(?ms)^#include[^\n]*$|^static inline .*?^}$"
     return call([CC, "-E", "-P", "-x", "c", "-"], re.sub(dropped, "", text))

@@ -70,7 +70,7 @@ def ffi() -> Any:
     """All types and functions of the C code, a `cffi.FFI`."""
     path = cached("declarations", HEADERS, [f"cffi {version('cffi')}"], _declare) / DECLARED
     names: dict[str, Any] = {}
-    exec(compile(path.read_text(), str(path), "exec"), names)
+    exec(compile(path.read_text(encoding="utf-8"), str(path), "exec"), names)
     return names["ffi"]
 
 

@@ -143,9 +143,9 @@ def release_folders() -> None:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a text in UTF-8."""
+    """Write a text in UTF-8, with a `?` for what a name that is in another code has beyond it."""
     with complete(path) as part:
-        part.write_text(text, encoding="utf-8")
+        part.write_text(text, encoding="utf-8", errors="replace")
 
 
 def write_bytes(path: Path, data: bytes) -> None:

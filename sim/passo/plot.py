@@ -52,6 +52,8 @@ STYLE = {
 def save(figure: Figure, path: Path, dpi: int) -> None:
     """Write a picture as PNG and close it; savefig would draw it twice, first for the layout only."""
     figure.set_dpi(dpi)
+    if title := figure.get_suptitle():  # the name of a file may be in another code than UTF-8
+        figure.suptitle(title.encode(errors="replace").decode())
     with complete(path) as part:
         figure.canvas.print_png(part)
     plt.close(figure)

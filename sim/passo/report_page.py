@@ -59,16 +59,16 @@ def write_data(name: str, data: tuple[dict[str, Any], str], path: Path) -> None:
 
 def source_of(scripts: tuple[str, ...]) -> str:
     """The text of scripts."""
-    return "\n".join((FOLDER / name).read_text() for name in scripts)
+    return "\n".join((FOLDER / name).read_text(encoding="utf-8") for name in scripts)
 
 
 def page(title: str, body: str) -> str:
     """A page with the styles and scripts in it; `body` comes last."""
-    notice, styles, library = ((FOLDER / name).read_text() for name in UPLOT)
+    notice, styles, library = ((FOLDER / name).read_text(encoding="utf-8") for name in UPLOT)
     return (
-        SHELL.read_text()
+        SHELL.read_text(encoding="utf-8")
         .replace("<!-- title -->", html.escape(title))
-        .replace("/* styles */", styles + (FOLDER / "page.css").read_text())
+        .replace("/* styles */", styles + (FOLDER / "page.css").read_text(encoding="utf-8"))
         .replace("/* scripts */", f"/*\nuPlot: {notice}*/\n{library}\n{source_of(SCRIPTS)}")
         .replace("<!-- body -->", body)
     )

@@ -76,10 +76,10 @@ def build(folder: Path) -> Path:
     """Write the page."""
     packed = base64.b64encode(zlib.compress(module().read_bytes(), 9)).decode()
     body = (
-        f"{(FOLDER / 'web.html').read_text()}"
+        f"{(FOLDER / 'web.html').read_text(encoding='utf-8')}"
         f'<script type="text/plain" id="wasm">{packed}</script>\n'
         f'<script type="text/plain" id="worker">{source_of(WORKER)}</script>\n'
-        f'<script type="application/json" id="shell">{_json(SHELL.read_text())}</script>\n'
+        f'<script type="application/json" id="shell">{_json(SHELL.read_text(encoding="utf-8"))}</script>\n'
         f'<script type="application/json" id="machine">{facts()}</script>\n'
         f"<script>{source_of(WEB)}</script>\n"
         "<script>openWeb();</script>"

@@ -59,7 +59,7 @@ class Source:
     @classmethod
     def read(cls, root: Path) -> "Source":
         """Read the table."""
-        table = tomllib.loads((root / SOURCE).read_text())
+        table = tomllib.loads((root / SOURCE).read_text(encoding="utf-8"))
         assert not table.keys() - {"parameter", "level", "input", "output"}
         outputs = [Pin(**pin) for pin in table["output"]]
         assert [pin.name for pin in outputs if pin.follows_sclk] == ["spi_miso"]

@@ -27,7 +27,7 @@ def make_firmware(*arguments: str) -> str:
     """Run the makefile of the firmware; return its output. Raises BuildError."""
     make_folder(paths.build)
     quiet = {k: v for k, v in environment().items() if k not in ("MAKEFLAGS", "MAKELEVEL")}
-    with open(paths.build / "firmware.lock", "w") as lock:
+    with open(paths.build / "firmware.lock", "w", encoding="utf-8") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         command = ["make", "-C", str(paths.firmware), *arguments]
         done = subprocess.run(command, env=quiet, capture_output=True, text=True)

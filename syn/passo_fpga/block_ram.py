@@ -27,9 +27,9 @@ def move_registers(netlist: dict[str, Any]) -> int:
 
 def move_registers_of(path: Path) -> int:
     """Modify the netlist file at `path`; return the number of registers packed."""
-    netlist = json.loads(path.read_text())
+    netlist = json.loads(path.read_text(encoding="utf-8"))
     moved = move_registers(netlist)
-    path.write_text(json.dumps(netlist))
+    path.write_text(json.dumps(netlist), encoding="utf-8")
     return moved
 
 

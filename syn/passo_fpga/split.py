@@ -15,7 +15,7 @@ _PLAIN = re.compile(r"^\$paramod(?:\$[0-9a-f]+)?\\([^\\]+)(?:\\.*)?$")
 
 def split(design: Design) -> list[dict[str, Any]]:
     """Cells of all instances of each module, without their submodules; largest first."""
-    modules = json.loads((synthesize(design) / CELLS).read_text())["modules"]
+    modules = json.loads((synthesize(design) / CELLS).read_text(encoding="utf-8"))["modules"]
     inside = {name.lstrip("\\"): facts["num_cells_by_type"] for name, facts in modules.items()}
     instances: Counter[str] = Counter()
 

@@ -45,7 +45,7 @@ def versions(programs: tuple[str, ...]) -> str:
 
 def workers() -> int:
     """Number of tools to run in parallel: one per processor core, limited by memory."""
-    facts = Path("/proc/meminfo").read_text()
+    facts = Path("/proc/meminfo").read_text(encoding="utf-8")
     found = re.search(r"^MemAvailable: +(\d+) kB", facts, re.M)
     free = int(found.group(1)) << 10 if found else 0
     return max(1, min(len(os.sched_getaffinity(0)), free // WORKER_BYTES))
@@ -95,7 +95,7 @@ def run(
 
 def _computed(process: int) -> float:
     """Processor time of a process in seconds."""
-    facts = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+    facts = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
     return sum(map(int, facts[11:13])) / os.sysconf("SC_CLK_TCK")  # in user and in system mode
 
 
@@ -107,7 +107,7 @@ def check(program: str, arguments: Sequence[object], folder: Path, log: str) -> 
 
 def failure(program: str, log: Path) -> ToolError:
     """The error for a failed program."""
-    lines = log.read_text().splitlines()
+    lines = log.read_text(encoding="utf-8").splitlines()
     errors = [line for line in lines if line.startswith("ERROR")]
     said = errors or lines[-MESSAGE_LINES:]
     return ToolError("\n".join([f"{program} failed ({relative(log, paths.root)}):", *said]))

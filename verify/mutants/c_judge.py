@@ -142,7 +142,7 @@ def record(
     for file in files:
         judge = hash_of(_imported(file))
         path = root / f"{file.stem}.json"
-        kept = json.loads(path.read_text()) if path.exists() else {}
+        kept = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
         reached = {name.split()[0] for of in kept.get("tests", {}).values() for name in of["reached"]}
         changed = {name for name, source in of_file.items() if kept.get("sources", {}).get(name) != source}
         if kept.get("judge") != judge or changed & reached or changed - kept["sources"].keys():

@@ -72,7 +72,7 @@ def _mutate(file: Path, made: Path, seed: int, share: int, first: int) -> list[C
     text = preprocessed(file, _headers())
     key = hash_of([Path(__file__).with_name("c_mutate.py")], text, f"{seed} {share} {first}")
     kept = made.with_suffix(".json")
-    stored = json.loads(kept.read_text()) if kept.exists() and made.exists() else {}
+    stored = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() and made.exists() else {}
     if stored.get("key") == key:
         return [CMutant(**mutant) for mutant in stored["mutants"]]
     parsed = Parsed(file, text)

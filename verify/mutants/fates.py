@@ -46,7 +46,11 @@ class Fates:
     def __init__(self, kind: str, judges: str, again: bool = True):
         self.path = BUILD / f"{kind}.json"
         self.judges = judges
-        stored = json.loads(self.path.read_text()) if self.path.exists() else {"judges": judges, "fates": {}}
+        stored = (
+            json.loads(self.path.read_text(encoding="utf-8"))
+            if self.path.exists()
+            else {"judges": judges, "fates": {}}
+        )
         # what other judges have not seen, these may see; what they have seen is to be seen again
         self.other = again and stored["judges"] != judges
         self.of = {name: Fate(**fate) for name, fate in stored["fates"].items()}

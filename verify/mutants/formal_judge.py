@@ -70,7 +70,7 @@ def _proof_modules(proof: formal.Proof) -> dict[str, tuple[Cells, Widths]]:
     folder = WORK / f"cells_{os.getpid()}_{proof.name}"
     formal.copy(proof, folder)
     yosys(folder, "\n".join([*_parts(proof)[0], "write_json cells.json"]) + "\n")
-    modules = json.loads((folder / "cells.json").read_text())["modules"]
+    modules = json.loads((folder / "cells.json").read_text(encoding="utf-8"))["modules"]
     shutil.rmtree(folder)
     return {
         name: (
@@ -86,7 +86,7 @@ def _proof_modules(proof: formal.Proof) -> dict[str, tuple[Cells, Widths]]:
 
 @cache
 def _core_modules(core: Path) -> dict[str, Any]:
-    return dict(json.loads(core.read_text())["modules"])
+    return dict(json.loads(core.read_text(encoding="utf-8"))["modules"])
 
 
 @cache
@@ -134,7 +134,7 @@ class Problem:
         script = "\n".join([*before, *made, *after, formal.PROBLEM])
         identity = self.folder / "hash"
         hashed = hash_of(proof.copies.values(), script)
-        if self.numbers and not (identity.exists() and identity.read_text() == hashed):
+        if self.numbers and not (identity.exists() and identity.read_text(encoding="utf-8") == hashed):
             formal.copy(proof, self.folder)
             yosys(self.folder, script, PREPARES)
             identity.write_text(hashed)

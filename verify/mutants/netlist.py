@@ -211,7 +211,7 @@ def drawn(core: Core, seed: int, each: int) -> tuple[list[Mutant], str]:
     """Mutants of a core, the same as long as the RTL is, and what identifies them."""
     hashed = hash_of([*rtl_sources(), *sorted(paths.rtl.glob("*.vh"))], core.name, f"{seed} {each}")
     kept = core.folder / "mutants.json"
-    stored = json.loads(kept.read_text()) if kept.exists() else {}
+    stored = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}
     if stored.get("hash") != hashed:
         mutants = draw(core, seed, each)
         if core.played:
@@ -231,7 +231,7 @@ def draw(core: Core, seed: int, each: int) -> list[Mutant]:
     """Draw `each` mutants from each module."""
     commands = read(core, core.folder)
     yosys(core.folder, f"{commands}write_json core.json")
-    all_modules = json.loads((core.folder / "core.json").read_text())["modules"]
+    all_modules = json.loads((core.folder / "core.json").read_text(encoding="utf-8"))["modules"]
     files: dict[str, list[str]] = {}
     for name in sorted(all_modules):
         file = file_of(name)
@@ -247,7 +247,7 @@ def draw(core: Core, seed: int, each: int) -> list[Mutant]:
     for file, names in files.items():
         columns = []
         for name in names:
-            made = (core.folder / lists[name]).read_text().splitlines()
+            made = (core.folder / lists[name]).read_text(encoding="utf-8").splitlines()
             columns.append(_mixed(core.name, file, all_modules[name], made, seed))
         rows = (row for row in zip_longest(*columns))
         found = {mutant.name: mutant for row in rows for mutant in row if mutant}

@@ -98,7 +98,7 @@ def play_kept(command: Sequence[str | Path], part: str, seed: int) -> tuple[Coun
     key = hash_of([Path(program)], [Path(program).name, *map(str, arguments)])
     kept_counts = BUILD / "played" / f"{part}-{key}.json"
     if kept_counts.exists():
-        return Counter(json.loads(kept_counts.read_text())), []
+        return Counter(json.loads(kept_counts.read_text(encoding="utf-8"))), []
     counts, failures = play_program(command, part, seed)
     if not failures:
         kept_counts.parent.mkdir(parents=True, exist_ok=True)
