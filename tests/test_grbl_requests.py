@@ -220,6 +220,24 @@ def test_a_feed_override_leaves_rapids_and_dwells_alone(session: GrblConsole) ->
     assert quarter[0] > 1.3 * full[0] and quarter[1:] == pytest.approx(full[1:], abs=0.01)
 
 
+@pytest.mark.parametrize("codes", [b"\x92" * 5, b"\x91" * 5], ids=["50 %", "150 %"])
+def test_a_jog_has_the_feed_that_it_names(session: GrblConsole, codes: bytes) -> None:
+    """An override is that of the lines behind it, also if it comes in the jog, and is reported."""
+    jog, line = "$J=G90 X-20 F2400", "G1 X0 F2400"
+    jogged, moved = seconds_of(session, jog), seconds_of(session, line)
+    session.send(codes)
+    assert seconds_of(session, jog) == pytest.approx(jogged, abs=0.01)
+    other = seconds_of(session, line)
+    assert abs(other - moved) > 0.1
+    session.send(b"\x90" + jog.encode() + b"\n", 0.1)
+    session.send(codes, 0.1)
+    assert session.fields("FS")[0] == pytest.approx(2400, abs=5)
+    told = next(report["Ov"] for report in (session.status() for _ in range(30)) if "Ov" in report)
+    assert told == f"{session.grbl.c.feed},100,100" != "100,100,100"
+    session.rest()
+    assert seconds_of(session, line) == pytest.approx(other, abs=0.01)
+
+
 def test_an_override_in_mid_motion_slows_down_the_rest_of_it(session: GrblConsole) -> None:
     """And ends at the same step."""
     session.send(b"G1 X-100 F6000\n", 0.3)

@@ -59,8 +59,7 @@ static void report(const struct passo_sink *sink, bool crystal, bool crc_unit)
 	if (fault.exception != 0u)
 		passo_say(sink, "note: exception %u at 0x%x\n", fault.exception, fault.address);
 	if (!crystal)
-		passo_say(sink, "note: no crystal: 64 MHz from the internal oscillator, all times of this "
-				"board to 1 %%\n");
+		passo_say(sink, "note: no crystal: 64 MHz, all times to 1 %%\n");
 	if (!crc_unit)
 		passo_say(sink, "note: CRC unit faulty: CRCs in software\n");
 }

@@ -176,7 +176,7 @@ static void report_accessories(struct passo_grbl *grbl, uint32_t output)
 
 static void report_overrides(struct passo_grbl *grbl, uint32_t output)
 {
-	const uint8_t percent[] = {grbl->feed_now, grbl->rapid_now, grbl->spindle_now};
+	const uint8_t percent[] = {grbl->feed, grbl->rapid, grbl->spindle};
 
 	for (unsigned i = 0; i < sizeof percent; i++) {
 		passo_grbl_say(grbl, i > 0 ? "," : "|Ov:");

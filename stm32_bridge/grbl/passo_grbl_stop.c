@@ -196,12 +196,18 @@ bool passo_grbl_end_stop(struct passo_grbl *grbl)
 	return true;
 }
 
+/* Jogs have the feed that they name. */
+static uint8_t feed_of(const struct passo_grbl *grbl)
+{
+	return grbl->jogs ? PERCENT_FULL : grbl->feed;
+}
+
 /* Feeds above 100 % are replanned; those below are the rate of the core. */
 void passo_grbl_override(struct passo_grbl *grbl)
 {
-	const uint32_t above = grbl->feed > PERCENT_FULL ? grbl->feed : PERCENT_FULL;
+	const uint32_t feed = feed_of(grbl), above = feed > PERCENT_FULL ? feed : PERCENT_FULL;
 
-	grbl->feed_now = grbl->feed;
+	grbl->feed_now = (uint8_t)feed;
 	grbl->rapid_now = grbl->rapid;
 	grbl->spindle_now = grbl->spindle;
 	passo_path_override(grbl->player->feed->path, PASSO_PATH_OVERRIDE_MIN * above / PERCENT_FULL);
@@ -226,7 +232,7 @@ void passo_grbl_mind_rate(struct passo_grbl *grbl)
 
 static bool has_changed(const struct passo_grbl *grbl)
 {
-	return grbl->feed != grbl->feed_now || grbl->rapid != grbl->rapid_now
+	return feed_of(grbl) != grbl->feed_now || grbl->rapid != grbl->rapid_now
 	    || grbl->spindle != grbl->spindle_now;
 }
 

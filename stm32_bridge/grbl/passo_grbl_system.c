@@ -42,7 +42,10 @@ static enum passo_gcode_error jog(struct passo_grbl *grbl, const char *text)
 		passo_gcode_set_position(gcode, before);
 		return PASSO_GCODE_TRAVEL;
 	}
-	grbl->jogs = grbl->jogs || error == PASSO_GCODE_OK;
+	if (error == PASSO_GCODE_OK) {
+		grbl->jogs = true;
+		passo_grbl_override(grbl);
+	}
 	return error;
 }
 
