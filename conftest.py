@@ -39,7 +39,7 @@ class Times:
         self.cases: dict[str, float] = defaultdict(float)
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        """Of its set-up, its call and its end."""
+        """Of its fixtures too."""
         self.cases[report.nodeid] += report.duration
 
     def pytest_sessionfinish(self) -> None:
