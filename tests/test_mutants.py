@@ -39,6 +39,7 @@ from verify.mutants.c_judge import Worker
 from verify.mutants.c_mutate import DECLARED
 from verify.mutants.c_source import CMutant
 from verify.mutants.c_source import drawn as drawn_c
+from verify.mutants.cells import kind_of
 from verify.mutants.engine_judge import Check
 from verify.mutants.netlist import PLAIN, TRACKED, Core, Mutant, drawn, file_of
 from verify.mutants.netlist import library as verilated
@@ -142,6 +143,18 @@ def test_a_promise_kills_a_mutant() -> None:
         assert formal_judge.broken(problem, 0, 60) == ""
         killed += sum(bool(formal_judge.broken(problem, number, 60)) for number in problem.numbers)
     assert killed
+
+
+def test_a_promise_that_fails_in_every_clock_kills_a_mutant() -> None:
+    """It breaks no induction, which begins where all promises are kept."""
+    drawn(SAMPLE, SEED, EACH)
+    module = json.loads((SAMPLE.folder / "core.json").read_text())["modules"]["passo_spi_top"]
+    name = next(name for name in module["cells"] if kind_of(name) == "not")
+    mutation = f"mutate -mode inv -module passo_spi_top -cell {name} -port Y -portbit 0"
+    mutant = Mutant(SAMPLE.name, 1, "passo_spi_top", mutation, "")
+    problem = formal_judge.Problem(SAMPLE, [mutant], formal_judge.proofs_of("passo_spi_top")[0])
+    assert formal_judge.broken(problem, 0, 60) == ""
+    assert formal_judge.broken(problem, 1, 60) == "drives_miso_when_selected"
 
 
 def test_what_a_judge_kills_is_not_equal(sample: tuple[list[Mutant], Path]) -> None:

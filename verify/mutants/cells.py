@@ -20,11 +20,14 @@ Cells = dict[tuple[str, str, str], list[str]]
 
 
 def named_bits(module: dict[str, Any]) -> dict[int, tuple[str, int]]:
-    """Wire and place of bits, without the numbers of yosys: of a wire, or of what a process gives it."""
+    """Wire and place of bits, without the numbers of yosys: of a wire, or of what a process gives it.
+
+    Not of a wire of a proof, whose names begin with f_.
+    """
     found: dict[int, tuple[str, int]] = {}
     for name, net in sorted(module["netnames"].items()):
         given = re.fullmatch(r"\$0\\(.+)\[\d+:\d+\]", name)
-        if given or not name.startswith("$"):
+        if given or not name.startswith(("$", "f_")):
             for place, bit in enumerate(net["bits"]):
                 if isinstance(bit, int):
                     found.setdefault(bit, (f"next {given[1]}" if given else name, place))

