@@ -79,5 +79,9 @@ module passo_axis_registers #(
     end
   end
 
+`ifdef FORMAL
+  `include "passo_axis_registers_formal.vh"
+`endif
+
 endmodule
 `resetall

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Promises of what all channels of a machine share; included at the end of passo_machine.v. E-stop and watchdog may do
-// anything.
+// Promises of what all channels of a machine share; included at the end of passo_machine.v. The e-stop may do
+// anything, the watchdog gives back what comes in (passo_watchdog_model.v).
 
 reg f_started = 1'b0;
 reg f_ran = 1'b0;  // no reset in the clock before
@@ -17,6 +17,12 @@ reg f_due = 1'b0;
 always @(posedge clk) begin
   f_due   <= f_started && !rst && !f_sets && f_since == filter;
   f_since <= rst || f_sets || f_since == filter ? 16'd0 : f_since + 16'd1;
+end
+
+// the model gives back the parity
+always @* begin
+  watchdog_takes_each_bit : assert (watchdog_stop == ^{write_watchdog, bus_data});
+  watchdog_sees_the_motion : assert (disable_drives == ^{slew_tick, bus_write | bus_read, moving});
 end
 
 always @(posedge clk) begin

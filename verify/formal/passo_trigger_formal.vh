@@ -10,6 +10,14 @@ always @(posedge clk) begin
   if (f_started && !$past(forget)) trigger_filter : assume (filter == $past(filter));
 end
 
+// --- The source that was written
+wire f_of_axis = source == TRIGGER_SOURCE_LIMIT_LOW || source == TRIGGER_SOURCE_LIMIT_HIGH
+                 || source == TRIGGER_SOURCE_HOME || source == TRIGGER_SOURCE_INDEX;
+wire [4:0] f_place = (source == TRIGGER_SOURCE_LIMIT_LOW  ? 5'd0 : source == TRIGGER_SOURCE_LIMIT_HIGH ? 5'd1 :
+                      source == TRIGGER_SOURCE_HOME ? 5'd2 : 5'd3) * AXES + axis;
+wire f_source = source == TRIGGER_SOURCE_PROBE ? probe : sources[f_place];
+wire f_exists = source == TRIGGER_SOURCE_PROBE || (f_of_axis && axis < AXES);
+
 // --- For how many clocks, with this one, the source has kept its level; since a write and `forget` it is the right one
 reg [2:0] f_age = 3'd0;  // clocks since then
 reg picked_q;
@@ -29,6 +37,12 @@ always @(posedge clk) begin
   f_was_armed <= !rst && (write ? bus_data[CHANNEL_TRIGGER_ARM_LSB] : f_was_armed && !latch);
 end
 
+reg [8:0] f_written;
+always @(posedge clk)
+  f_written <= {bus_data[CHANNEL_TRIGGER_ACTION_LSB+:CHANNEL_TRIGGER_ACTION_BITS], bus_data[CHANNEL_TRIGGER_FALLING_LSB],
+                bus_data[CHANNEL_TRIGGER_AXIS_LSB+:CHANNEL_TRIGGER_AXIS_BITS],
+                bus_data[CHANNEL_TRIGGER_SOURCE_LSB+:CHANNEL_TRIGGER_SOURCE_BITS]};
+
 always @(posedge clk)
   if (f_begun && $past(f_begun)) begin
     if (latch) fires_only_when_armed : assert ($past(armed) && f_was_armed);
@@ -40,7 +54,12 @@ always @(posedge clk)
     if (armed && (picked ^ level)) not_later : assert (f_run <= {1'b0, filter});
     if ($past(fired) && !$past(write)) stays_fired : assert (fired);
     if (hard_stop || soft_stop || end_endless) acts_with_the_latch : assert (latch);
-    if ($past(f_begun, 2) && $past(!write) && source == TRIGGER_SOURCE_PROBE) source_is_seen : assert (picked == $past(probe));
+    settings_as_written :
+    assert ({action, falling, axis, source} == ($past(write) ? f_written : $past({action, falling, axis, source})));
+    acts_as_written :
+    assert (hard_stop == (latch && action == TRIGGER_ACTION_HARD_STOP) && soft_stop == (latch && action == TRIGGER_ACTION_SOFT_STOP)
+            && end_endless == (latch && action == TRIGGER_ACTION_END_ENDLESS));
+    if ($past(f_exists)) source_is_seen : assert (picked == $past(f_source));
     if (armed && !$past(armed)) begin
       armed_at_a_known_level : assert ($past(f_same) > {2'd0, $past(filter)});
       armed_at_this_level : assert (level == $past(picked));

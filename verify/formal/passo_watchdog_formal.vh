@@ -41,6 +41,12 @@ always @(posedge clk)
     if ($past(feed)) fed_is_calm : assert (!stop && !disable_drives);
   end
 
+always @(posedge clk)
+  if (f_started) begin
+    times_as_written :
+    assert ({disable_after, stop_after} == ($past(rst) ? 20'd0 : $past(write) ? $past(bus_data) : $past({disable_after, stop_after})));
+  end
+
 // --- What the induction relies on
 wire [31:0] f_time = stop ? f_stopped : f_age;
 wire [31:0] f_end = stop ? f_disable_time : f_stop_time;
