@@ -18,6 +18,7 @@ from passo.toolchain import environment
 from verify.mutants import (
     c_judge,
     corners_judge,
+    encoders_judge,
     engine_judge,
     equivalence,
     fates,
@@ -122,6 +123,7 @@ def test_a_check_in_python_kills_mutants(
     [
         (inputs_judge.CHECK, MACHINE),
         (outputs_judge.CHECK, MACHINE),
+        (encoders_judge.CHECK, MACHINE),
         (rests_judge.CHECK, MACHINE),
         (trackers_judge.CHECK, TRACKED.parameters),
     ],

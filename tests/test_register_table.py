@@ -97,6 +97,17 @@ class Core:
             "CHANNEL_RAMP": [1, 0, 1, 0, 1],
             "CHANNEL_RASTER": [0x12345678],
         }
+        directions = (1 << parameters.axes) - 1 << r.LINE_CONTROL_DIRECTIONS_LSB
+        raster = (1 - parameters.raster) << r.LINE_OUTPUT_RASTER_LSB
+        # the bits of their words, where not all are
+        self.bits = {
+            "CHANNEL_LINE": [
+                directions | (1 << r.LINE_CONTROL_DIRECTIONS_LSB) - 1 & r.LINE_CONTROL_DEFINED,
+                *[(1 << 30) - 1] * (1 + parameters.axes),
+                *[r.LINE_OUTPUT_DEFINED & ~raster] * parameters.outputs,
+            ],
+            "CHANNEL_RAMP": [r.RAMP_CONTROL_DEFINED, *[0xFFFFFFFF] * 2, 0xFFFF, 0xFFFFFFFF],
+        }
         self.registers = [
             (address, register) for address, register in self.table.items() if register.name not in self.items
         ]
@@ -238,6 +249,16 @@ class Core:
                 where = f"{register.name} at 0x{address:03X}"
                 assert self.write(address, 1) == Verdict.BAD_OPERATION, where
                 assert self.push(address, *self.items[register.name]) == Verdict.OK, where
+                self.check_bits(address, register.name)
+
+    def check_bits(self, address: int, name: str) -> None:
+        """Each bit that a word of a line or a ramp does not have is refused."""
+        item = self.items[name]
+        for place, known in enumerate(self.bits.get(name, ())):
+            for bit in (1 << n for n in range(32)):
+                if not known & bit:
+                    words = [*item[:place], item[place] | bit, *item[place + 1 :]]
+                    assert self.push(address, *words) == Verdict.BAD_VALUE, f"{name}: 0x{bit:X} of {place}"
 
     def check_holes(self) -> None:
         """Where there is no register there is no answer; writes and pushes are tried beside registers.

@@ -129,17 +129,21 @@ class Frames:
             base + r.CHANNEL_RATE: [self.rates[number]],
             base + r.CHANNEL_ROOM: [lines << r.CHANNEL_ROOM_LINE_ROOM_LSB | ramps],
             base + r.CHANNEL_POSITION_BASE: [0] * axes,
-            r.ADDRESS_REFUSALS_0: [
-                sum(self.refused[verdict] % 256 << 8 * n for n, verdict in enumerate(COUNTED[at : at + 4]))
-                for at in (0, 4)
-            ],
+            r.ADDRESS_REFUSALS_0: self.counters(),
         }
         address, data = rng.choice(list(known.items()))
         return Sent(READ, address, [0] * len(data), Verdict.OK, data=data)
 
-    def exchange(self) -> None:
-        """Send a frame and judge the reply."""
-        rng, sent = self.rng, self.draw()
+    def counters(self) -> list[int]:
+        """The words that count refusals."""
+        return [
+            sum(self.refused[verdict] % 256 << 8 * n for n, verdict in enumerate(COUNTED[at : at + 4]))
+            for at in (0, 4)
+        ]
+
+    def exchange(self, chosen: Sent | None = None) -> None:
+        """Send a frame and judge the reply; one that is drawn may have a bad CRC."""
+        rng, sent = self.rng, chosen or self.draw()
         length = len(sent.words) if sent.length < 0 else sent.length
         sequence = self.sequence if rng.random() < 0.2 else rng.getrandbits(8)
         header = sent.operation << 28 | sequence << 20 | length << 12 | sent.address
@@ -149,7 +153,7 @@ class Frames:
         headed = sent.operation in (READ, WRITE, PUSH) and 0 < length <= frame.PAYLOAD_MAX
         if headed and sent.operation != READ and self.known and sequence == self.sequence:
             verdict = Verdict.DUPLICATE
-        if rng.random() < 0.12:
+        if chosen is None and rng.random() < 0.12:
             crc ^= 1 << rng.randrange(32)
             verdict = Verdict.BAD_CRC
         mosi = [*request, crc, 0, 0] if sent.operation != READ else [header, crc, 0, *[0] * length, 0]
@@ -182,6 +186,11 @@ class Frames:
         self.engine.select(False)
         self.engine.run(20)
 
+    def count(self) -> None:
+        """Read how many frames have been refused."""
+        data = self.counters()
+        self.exchange(Sent(READ, r.ADDRESS_REFUSALS_0, [0] * len(data), Verdict.OK, data=data))
+
     def note(self, sent: Sent, sequence: int, verdict: Verdict) -> None:
         """What it has changed."""
         if verdict in self.refused:
@@ -210,6 +219,20 @@ def check(engine: Engine, parameters: Parameters, rng: random.Random) -> None:
         if number % 8 == 7:
             frames.cut()
         frames.exchange()
+    frames.count()
+    refused = (
+        Sent(WRITE, r.ADDRESS_IDENTIFICATION, [0], Verdict.READ_ONLY),
+        Sent(WRITE, NO_REGISTER, [0], Verdict.UNKNOWN_ADDRESS),
+    )
+    for sent in refused:  # each is the first one after a reset
+        engine.set("rst", 1)
+        engine.run(rng.randint(1, 9))
+        engine.set("rst", 0)
+        engine.run(100)
+        frames = Frames(engine, parameters, rng)
+        frames.count()
+        frames.exchange(sent)
+        frames.count()
 
 
 CHECK = Check("frames", "frames", check)

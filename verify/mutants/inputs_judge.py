@@ -53,6 +53,54 @@ def check_levels(machine: Machine) -> None:
     machine.link.write(base + r.CHANNEL_INPUT_CLEAR, 0xFFFFFFFF)
 
 
+def trigger_state(machine: Machine) -> r.ChannelTriggerStateWord:
+    """As it is read."""
+    return r.ChannelTriggerStateWord.unpack(
+        machine.link.read(machine.channel.base + r.CHANNEL_TRIGGER_STATE, 1)[0]
+    )
+
+
+def check_probe(machine: Machine) -> None:
+    """As the other inputs: its level, with either polarity, and its flag."""
+    place = machine.channel.base + r.CHANNEL_PROBE
+    for inverted in (0, 1):
+        for level in (1, 0):
+            machine.link.write(place, inverted << r.CHANNEL_PROBE_INVERTED_LSB)
+            machine.set("probe", level)
+            machine.engine.run(SETTLES)
+            active = bool(level ^ inverted)
+            state = trigger_state(machine)
+            assert state.probe == active and state.probe_flag >= active, f"{state}"
+            machine.link.write(
+                place, 1 << r.CHANNEL_PROBE_CLEAR_LSB | inverted << r.CHANNEL_PROBE_INVERTED_LSB
+            )
+            machine.engine.run(10)
+            state = trigger_state(machine)
+            assert state.probe_flag == active, f"{state}"
+    machine.link.write(place, 1 << r.CHANNEL_PROBE_CLEAR_LSB)
+    machine.engine.run(SETTLES)
+
+
+def check_polarity(machine: Machine) -> None:
+    """Another polarity is no edge: it arms the trigger again, at the new level."""
+    rng, link, base = machine.rng, machine.link, machine.channel.base
+    axis, falling = rng.randrange(machine.axes), bool(rng.getrandbits(1))
+    link.write(r.ADDRESS_INPUT_FILTER, 0)
+    machine.engine.run(SETTLES)
+    word = r.ChannelTriggerWord(
+        source=TriggerSource.HOME, axis=axis, falling=falling, action=TriggerAction.LATCH, arm=True
+    )
+    link.write(base + r.CHANNEL_TRIGGER, word.pack())
+    for active in (False, True, False, True, False):
+        settings = machine.channel.axis_base(axis) + r.AXIS_INPUTS
+        link.write(settings, int(active) << r.AXIS_INPUTS_HOME_INVERTED_LSB)
+        machine.engine.run(SETTLES)
+        state = trigger_state(machine)
+        assert (state.armed, state.fired, state.source_active) == (True, False, active), f"{state}"
+    link.write(base + r.CHANNEL_TRIGGER, 0)
+    machine.clear()
+
+
 def check_trigger(machine: Machine) -> None:
     """Any edge of any source: no glitch fires it, and it latches the positions of its clock."""
     rng, link, base = machine.rng, machine.link, machine.channel.base
@@ -71,13 +119,13 @@ def check_trigger(machine: Machine) -> None:
     machine.engine.run(length)
     machine.set(pin, before)
     machine.move([rng.choice((-8, 8)) for _ in range(machine.axes)], rng.randint(4, 9))
-    state = r.ChannelTriggerStateWord.unpack(link.read(base + r.CHANNEL_TRIGGER_STATE, 1)[0])
+    state = trigger_state(machine)
     assert (state.armed, state.fired, state.source_active) == (True, False, falling), f"{state}"
     at = machine.engine.clock
     machine.set(pin, after)
     machine.engine.run(length + 300)
     words = link.read(base + r.CHANNEL_TRIGGER_POSITION_BASE, machine.axes)
-    state = r.ChannelTriggerStateWord.unpack(link.read(base + r.CHANNEL_TRIGGER_STATE, 1)[0])
+    state = trigger_state(machine)
     assert (state.armed, state.fired) == (False, True), f"{state}"
     machine.channel.abort()
     machine.check_position()
@@ -203,6 +251,8 @@ def check(engine: Engine, parameters: Parameters, rng: random.Random) -> None:
         return
     machine = Machine(engine, rng, parameters)
     check_levels(machine)
+    check_probe(machine)
+    check_polarity(machine)
     for kind in (*KINDS, *3 * [check_trigger], check_end_endless, check_unknown, check_soft_limit):
         kind(machine)
     check_watchdog(machine)

@@ -25,6 +25,7 @@ from verify.mutants.engine_judge import Check
 LONGEST = 300_000  # clocks of a motion
 FRAME = 64 + 2 * 128 + 8  # clocks from the words of a write to the end of its acknowledgment
 GRANULE = 200  # clocks from one look at `running` to the next
+SLEWS, MOST_SLEW = (1 << 15) - 1, 31_000  # bits of a slew of the rate that are set
 TIME = 8  # clocks of each pin timing, at most: no step waits at SLOW
 
 Steps = list[tuple[int, int]]  # clock and direction
@@ -153,6 +154,9 @@ class Motions:
         self.lacked[channel.number] += drained
         assert state.quiet and state.drained == self.lacked[channel.number], f"{state}"
         assert self.engine.irq == stopped, "irq"
+        parts = {"outputs": self.parameters.outputs, "power": self.parameters.outputs}
+        for pin, there in (parts | {"compare": self.parameters.compare}).items():
+            assert there or not self.events[pin].any(), f"{pin} without its part"
         status = r.StatusWord.unpack(self.link.status)
         assert (status.any_stopped, status.any_occupied) == (stopped, False), f"{status}"
         if stopped:
@@ -206,10 +210,10 @@ class Motions:
         steps = tuple(self.rng.randint(-n, n) for _ in range(axes - 1))
         return [Line(n, (n, *steps), endless=True)], [Ramp(velocity, 0), Ramp(velocity, ticks, last=True)]
 
-    def paced(self, channel: Channel, stops: bool) -> None:
+    def paced(self, channel: Channel, stops: bool, slews: tuple[int, int]) -> None:
         """The rate goes to its goal by its slew with each tick: override, hold, resume, soft stop."""
         rng = self.rng
-        slew, stop_slew = (rng.randint(1500, 30000) for _ in range(2))
+        slew, stop_slew = slews
         rate = rng.randint(RATE_ONE // 4, RATE_ONE)
         lines, ramps = self.cruise(SLOW - rng.getrandbits(40), 60, self.parameters.axes)
         self.write(channel, r.CHANNEL_RATE_TARGET, rate, slew, stop_slew)
@@ -425,8 +429,10 @@ def check(engine: Engine, parameters: Parameters, rng: random.Random) -> None:
     motions.set_up()
     for channel in motions.channels:
         motions.exact(channel)
-    for stops in (False, True):
-        motions.paced(rng.choice(motions.channels), stops)
+    slews = rng.randint(SLEWS - MOST_SLEW, MOST_SLEW), rng.randint(SLEWS - MOST_SLEW, MOST_SLEW)
+    for stops in (False, True):  # each bit of a slew is 0 once, and 1
+        motions.paced(rng.choice(motions.channels), stops, slews)
+        motions.paced(rng.choice(motions.channels), stops, (SLEWS - slews[0], SLEWS - slews[1]))
     kinds = (motions.aborted, motions.underrun, motions.drained, motions.starved, motions.overrun)
     for play in kinds:
         play(rng.choice(motions.channels))

@@ -7,6 +7,7 @@ import numpy as np
 from passo import registers as r
 from passo.build import Parameters
 from passo.engine import Engine
+from passo.host import RATE_ONE
 from passo.registers import Cause
 
 from tests.helpers.closed_form import ONE, Line, Ramp, substep_clocks
@@ -22,6 +23,9 @@ MODULES = (
 FULL = 1 << 24  # of the phase of a period
 VALUES = (6, 6, 1020)  # of a raster line, by round; the last fills the queue
 PUSHED = 60  # words of a frame
+LAGS = 1500, 2047  # clocks, until which the velocity has fallen
+SEEN = 2000  # clocks of the power
+BITS = range(3, 32, 2)  # of a velocity of UQ0.32
 
 
 def pulses(power: int, step: int, clocks: int, cost: int) -> np.ndarray:
@@ -94,6 +98,64 @@ class Outputs(Motions):
         assert not self.level("power", channel.number, end, end + 20).any() & 1, "power at rest"
         self.check_end(channel, Cause.NONE)
 
+    def bits(self) -> None:
+        """Lines whose power is one bit each, as short as the PWM can make it."""
+        rng, channel, axes = self.rng, self.channels[0], self.parameters.axes
+        places = min(16, 1 << self.parameters.line_queue_log2)
+        powers = rng.sample([1 << n for n in range(16)], places)
+        step, gap, m = rng.randint(1 << 16, 1 << 20), 24, 20
+        self.write(channel, r.CHANNEL_OUTPUT_LAG, 0, step)
+        words = [
+            r.LineOutputWord(levels=n, power=power, proportional=False, raster=False)
+            for n, power in enumerate(powers)
+        ]
+        lines = [Line(m, (m,) * axes, last=n == places - 1) for n in range(places)]
+        ramps = [Ramp(ONE // gap, 0), Ramp(ONE // gap, m * places * gap // self.tick + 2, last=True)]
+        self.link.write(r.ADDRESS_RUN, 0)
+        channel.push_lines([to_line(line) for line in lines], words)
+        channel.push_ramps([to_ramp(ramp) for ramp in ramps])
+        self.events = self.engine.drain()[-1:]
+        channel.start()
+        self.wait(channel)
+        begin, _ = self.runs(channel)
+        clocks = [begin + n for n in substep_clocks(ramps, self.tick.bit_length() - 1)]
+        for n, power in enumerate(powers[:-1]):
+            self.check_power(clocks[n * m], clocks[(n + 1) * m], power, step)
+        self.check_end(channel, Cause.NONE)
+
+    def slow(self, bits: int) -> None:
+        """Power in proportion to a velocity of so many bits, to which it falls after the first substep."""
+        rng, channel, axes = self.rng, self.channels[0], self.parameters.axes
+        velocity = rng.getrandbits(bits) | 1 << bits - 1
+        rate = rng.randint(1, RATE_ONE) if bits > 20 else RATE_ONE
+        lag = rng.randint(*LAGS)
+        speed = velocity * rate >> 16
+        step = int(2 ** rng.uniform(8, 20))
+        reference = min(int(speed * 2 ** rng.uniform(0, 6)) + 1, 1 << 31)
+        power = rng.randint(1 << 8, 65535)
+        self.write(channel, r.CHANNEL_RATE_TARGET, RATE_ONE, RATE_ONE)
+        self.write(channel, r.CHANNEL_OUTPUT_LAG, lag, step, reference)
+        fast = ONE // 30
+        ramps = [Ramp(fast, 0), Ramp(fast, 2), Ramp(velocity << 16, 0), Ramp(velocity << 16, 60_000)]
+        word = r.LineOutputWord(levels=0, power=power, proportional=True, raster=False)
+        self.link.write(r.ADDRESS_RUN, 0)
+        channel.push_lines([to_line(Line(1 << 29, (0,) * axes, last=True))], [word])
+        channel.push_ramps([to_ramp(ramp) for ramp in ramps])
+        self.events = self.engine.drain()[-1:]
+        channel.start()
+        self.engine.run(3 * self.tick)
+        self.write(channel, r.CHANNEL_RATE_TARGET, rate)
+        self.engine.run(lag + SEEN)
+        channel.abort()
+        self.engine.run(100)
+        self.see()
+        begin, _ = self.runs(channel)
+        first = begin + substep_clocks(ramps[:2], self.tick.bit_length() - 1)[0] + lag
+        cost = (step * reference >> 1) // max(velocity * rate >> 17, 1)
+        self.check_proportional(first, first + SEEN, power, step, cost)
+        self.write(channel, r.CHANNEL_OUTPUT_LAG, 0)
+        self.check_end(channel, Cause.ABORT)
+
     def check_power(self, begin: int, end: int, power: int, step: int) -> None:
         """A power that does not depend on the speed."""
         due = pulses(power, step, max(end - begin, 0), step)  # none, if it lags beyond the motion
@@ -120,6 +182,9 @@ def check(engine: Engine, parameters: Parameters, rng: random.Random) -> None:
     outputs.set_up()
     for count in VALUES:
         outputs.lines(count)
+    outputs.bits()
+    for bits in BITS:
+        outputs.slow(bits)
 
 
 CHECK = Check("outputs", "motions", check, MODULES)

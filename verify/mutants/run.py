@@ -26,6 +26,7 @@ from verify.mutants import (
     c_judge,
     c_source,
     corners_judge,
+    encoders_judge,
     engine_judge,
     equivalence,
     formal_judge,
@@ -82,7 +83,7 @@ def run_core(core: Core, seed: int, each: int, only: Collection[str]) -> list[Sc
         *(frames_judge.CHECK, motions_judge.CHECK, timings_judge.CHECK, lines_judge.CHECK),
         rests_judge.CHECK,
         *(shapes_judge.CHECK, corners_judge.CHECK, inputs_judge.CHECK, outputs_judge.CHECK),
-        *(*registers_judge.CHECKS, *trackers_judge.TABLES),
+        *(encoders_judge.CHECK, *registers_judge.CHECKS, *trackers_judge.TABLES),
     ):
         engine_judge.judge(core, chosen, fates, verilated, seed, _say, check)
     pins.judge(second)
