@@ -125,7 +125,7 @@ module passo_channel_control #(
 
   always @(posedge clk) begin
     occupied_q <= {occupied_q[1:0], occupied};
-    at_rest    <= ~rst & ~occupied & (occupied_q == 3'b000) & axes_quiet & outputs_quiet & ~tracking;
+    at_rest    <= ~occupied & (occupied_q == 3'b000) & axes_quiet & outputs_quiet & ~tracking;
   end
 
   passo_channel_registers #(

@@ -99,7 +99,7 @@ module passo_lines #(
   );
 
   always @(posedge clk) begin
-    no_repeat <= ~rst & (end_endless | (no_repeat & ~take));
+    no_repeat <= end_endless | (no_repeat & ~take);  // until the next line, if at rest the first one
     if (load_start_q) moves <= current_moves;
     if (rst || TRACKERS == 0) moves <= {AXES{1'b0}};
   end

@@ -64,8 +64,7 @@ module passo_tables #(
     second <= ~second;
     if (!second) asked <= (request & channel_mask & ~serves) != {CHANNELS{1'b0}};
     else channel <= channel == CHANNEL_LAST ? 3'd0 : channel + 3'd1;
-    // read_data holds the point in the clock after `second`, then point_next
-    if (!second) point <= read_data;
+    point  <= read_data;  // which holds the point in the clock after `second`, then point_next
     serves <= (second && asked) ? channel_mask : {CHANNELS{1'b0}};
     served <= serves;
     if (rst) begin

@@ -67,7 +67,6 @@ module passo_tracker_program (
       end
       4'd1: begin
         first     = TARGET;
-        subtracts = 1'b0;
         is_first  = ~word;
         no_second = 1'b1;
       end
@@ -94,7 +93,6 @@ module passo_tracker_program (
       4'd10: begin
         first     = {odd, LIMIT};
         second    = {POSITION[3:1], 1'b1};
-        subtracts = 1'b0;
         no_second = 1'b1;
       end
       4'd11: begin

@@ -51,7 +51,7 @@ module passo_trackers #(
 
   always @(posedge clk) begin
     busy        <= ~rst & (made | ((moves | owes) != {AXES{1'b0}}));
-    path_runs_q <= ~rst & path_runs;
+    path_runs_q <= path_runs;
   end
 
   passo_tracker #(
