@@ -17,7 +17,7 @@ from passo.failure import Failure
 from verify.mutants.fates import Fates, hash_of
 from verify.mutants.netlist import Core, Mutant
 
-HANGS = 30  # seconds of the processor
+HANGS = 60  # seconds of the processor
 
 
 @dataclass(frozen=True)

@@ -124,7 +124,7 @@ class Outputs(Motions):
         self.check_end(channel, Cause.NONE)
 
     def slow(self, bits: int) -> None:
-        """Power in proportion to a velocity of so many bits, to which it falls after the first substep."""
+        """Power in proportion to a velocity of `bits` bits, to which it falls after the first substep."""
         rng, channel, axes = self.rng, self.channels[0], self.parameters.axes
         velocity = rng.getrandbits(bits) | 1 << bits - 1
         rate = rng.randint(1, RATE_ONE) if bits > 20 else RATE_ONE

@@ -8,11 +8,14 @@ from passo.build import Parameters
 from passo.engine import Engine
 from passo.registers import Cause, Shape
 
-from tests.helpers.closed_form import substep_clocks
+from tests.helpers.closed_form import Line, Ramp, substep_clocks
+from tests.helpers.motions import SLOW
+from tests.test_register_table import Core as Table
 from verify.mutants.engine_judge import Check
 from verify.mutants.motions_judge import Motions
 
 ROUNDS = 5
+READS = 80  # addresses
 POINTS, WORDS = 256, 32  # of a shape; of a frame
 SHAPE_END = 1 << 16
 MODULES = (
@@ -33,7 +36,7 @@ class Shapes(Motions):
             Shape.SIGMOID: r.ADDRESS_SIGMOID_BASE,
             Shape.EASE: r.ADDRESS_EASE_BASE,
         }
-        loaded = {shape: sorted(self.rng.choices(range(SHAPE_END), k=POINTS)) for shape in addresses}
+        loaded = {shape: self.rng.choices(range(SHAPE_END), k=POINTS) for shape in addresses}
         for shape, address in addresses.items():
             for k in range(0, POINTS, WORDS):
                 self.link.write(address + k, *loaded[shape][k : k + WORDS])
@@ -59,6 +62,24 @@ class Shapes(Motions):
         for channel in self.channels:
             self.check_end(channel, Cause.NONE)
 
+    def whole(self) -> None:
+        """A ramp of each shape that takes each of its points, which no other access has changed."""
+        table = Table(self.link, self.parameters)
+        for address in self.rng.sample(sorted(table.table), min(READS, len(table.table))):
+            table.read(address)
+        channel, axes = self.rng.choice(self.channels), self.parameters.axes
+        shapes = self.rng.sample(list(self.tables), len(self.tables))
+        ramps = [Ramp(SLOW * (n % 2 == 0), POINTS, shape) for n, shape in enumerate(shapes)]
+        ramps.append(Ramp(0, 1, last=True))
+        clocks = substep_clocks(ramps, self.tick.bit_length() - 1, self.tables)
+        lines = [Line(len(clocks), (len(clocks),) * axes, last=True)]
+        self.push(channel, lines, ramps)
+        channel.start()
+        self.wait(channel)
+        begin, _ = self.runs(channel)
+        self.check_steps(channel, lines, [begin + n for n in clocks])
+        self.check_end(channel, Cause.NONE)
+
 
 def check(engine: Engine, parameters: Parameters, rng: random.Random) -> None:
     """Some motions.
@@ -72,6 +93,7 @@ def check(engine: Engine, parameters: Parameters, rng: random.Random) -> None:
         shapes.together()
         if number % 2 == 0:
             shapes.load()
+            shapes.whole()
 
 
 CHECK = Check("shapes", "motions", check, MODULES)

@@ -29,6 +29,8 @@ ABOVE = 3  # ticks above the fastest motion
 DROPPED = 7  # steps of a tracker, at most, by a hard stop
 NOT_MADE = 3  # steps when an axis has no room: one is lost, two that wait for it are dropped
 OWN = re.compile("TRACKER|COMMAND|TRIGGER")  # registers that do something to a tracker
+SHAPES = re.compile("COSINE|SIGMOID|EASE")
+POINTS = 40  # of the shapes that are written
 SLOWEST = STEP // 8  # that is drawn: nothing takes long
 
 # Clocks by which a tracker's step counts before it is at the pins: those that fit the core itself.
@@ -58,9 +60,14 @@ class Trackers(Host):
     def elsewhere(self) -> None:
         """What is written to other registers of the channel is not for its trackers."""
         table = Table(self.link, self.parameters)
-        for address, register in table.registers:
-            if register.block == "CHANNEL" and "w" in register.access and not OWN.search(register.name):
-                assert table.write(address, register.reset) == Verdict.OK, register.name
+        points = [one for one in table.registers if SHAPES.search(one[1].name)]
+        others = [
+            (address, register)
+            for address, register in table.registers
+            if register.block == "CHANNEL" and "w" in register.access and not OWN.search(register.name)
+        ]
+        for address, register in [*others, *self.rng.sample(points, POINTS)]:
+            assert table.write(address, register.reset) == Verdict.OK, register.name
 
     def lands(self) -> None:
         """All axes together, from rest to rest; in nearly the shortest time."""
@@ -92,6 +99,18 @@ class Trackers(Host):
         self.enable(0)
         self.alone()
         self.check_rest(0)
+
+    def distances(self) -> None:
+        """At rest a tracker is at its target, and not at any other, however far."""
+        for bit in range(32):
+            places = [self.position(axis) for axis in range(self.axes)]
+            axis = self.rng.randrange(self.axes)
+            for distance in (1 << bit, -1 << bit, 0):
+                self.go(axis, places[axis] + distance)
+                self.engine.run(4 * self.period)
+                state = self.state()
+                assert bool(state.at_target >> axis & 1) == (distance == 0), f"{distance} steps away: {state}"
+        self.alone()
 
     def jumps(self, rounds: int = 40) -> None:
         """Targets, speeds and enables change at any time."""
@@ -477,6 +496,83 @@ class Trackers(Host):
             before = way
         return True
 
+    def returns(self) -> None:
+        """Trackers that turn while their steps wait: for a slow path, and for pins that are slow to turn."""
+        rng, before = self.rng, list(self.timings)
+        for axis in range(self.axes):
+            setup, hold = rng.randint(200, 500), rng.randint(200, 500)
+            self.timings[axis] = replace(before[axis], dir_setup=setup, dir_hold=hold)
+            self.link.write(self.channel.axis_base(axis) + r.AXIS_DIR_TIMING, setup << 16 | hold)
+            self.limit(axis, STEP // 3, STEP // 6)
+        self.alone()
+        self.enable((1 << self.axes) - 1)
+        for _ in range(3):
+            begun = [a - b for a, b in zip(self.channel.positions(), self.read(), strict=True)]
+            gap = rng.randint(1200, 2500)
+            sizes = [rng.randint(1, 3) for _ in range(20)]
+            ramps = [Ramp(ONE // gap, 0), Ramp(ONE // gap, sum(sizes) * gap // self.tick + 1, last=True)]
+            total = len(substep_clocks(ramps, self.tick.bit_length() - 1))
+            sizes.append(max(total - sum(sizes), 1))
+            lines = [
+                Line(
+                    m,
+                    self.of_lines([rng.choice((m, -m, 0, 0)) for _ in range(self.axes)]),
+                    last=n == len(sizes) - 1,
+                )
+                for n, m in enumerate(sizes)
+            ]
+            self.push(self.channel, lines, ramps)
+            self.channel.start()
+            for _ in range(90):
+                axis = rng.randrange(self.axes)
+                self.go(axis, self.targets[axis][0] + rng.choice((-1, 1)) * rng.randint(1, 2))
+                self.run(rng.randint(1, 1000))
+            self.wait(self.channel)
+            self.settle()
+            self.directions(lines)
+            self.landed()
+            moved = [sum(line.steps[axis] for line in lines) for axis in range(self.axes)]
+            after = [a - b for a, b in zip(self.channel.positions(), self.read(), strict=True)]
+            assert after == [a + b for a, b in zip(begun, moved, strict=True)], "positions are the sums"
+        self.enable(0)
+        for axis, timing in enumerate(before):
+            self.link.write(
+                self.channel.axis_base(axis) + r.AXIS_DIR_TIMING, timing.dir_setup << 16 | timing.dir_hold
+            )
+        self.alone()
+        self.timings = before
+
+    def turned(self) -> None:
+        """Back from a step against the path, which the pins have not made when the path moves on."""
+        rng, axis = self.rng, self.rng.randrange(self.parameters.lined)
+        before, way, gap = self.timings[axis], rng.choice((-1, 1)), rng.randint(950, 1050)
+        self.timings[axis] = replace(before, dir_setup=2 * gap, dir_hold=3 * gap)
+        timing = self.channel.axis_base(axis) + r.AXIS_DIR_TIMING
+        self.link.write(timing, 2 * gap << 16 | 3 * gap)
+        self.limit(axis, STEP - 1, STEP // 2)
+        here = self.position(axis)
+        self.alone()
+        self.enable(1 << axis)
+        begun = self.channel.positions()
+        ramps = [Ramp(ONE // gap, 0), Ramp(ONE // gap, 7 * gap // self.tick, last=True)]
+        steps = self.of_lines([way * (other == axis) for other in range(self.axes)])
+        lines = [Line(1, steps), Line(4, (0,) * self.axes), Line(1, steps, last=True)]
+        self.push(self.channel, lines, ramps)
+        self.channel.start()
+        self.run(3 * gap // 2)
+        self.down[axis] = way < 0
+        for target in (here - way, here):
+            self.go(axis, target)
+        self.wait(self.channel)
+        self.settle()
+        begun[axis] += 2 * way
+        assert self.channel.positions() == begun, "positions are the sums"
+        self.landed()
+        self.enable(0)
+        self.link.write(timing, before.dir_setup << 16 | before.dir_hold)
+        self.alone()
+        self.timings[axis] = before
+
     def held(self) -> None:
         """While the path stands, trackers move as without one; each to the target of its line's direction."""
         rng = self.rng
@@ -618,9 +714,13 @@ def check(engine: Engine, parameters: Parameters, rng: random.Random) -> None:
     trackers.set_up()
     trackers.measure()
     trackers.lands()
+    trackers.distances()
     trackers.jumps()
     for _ in range(4):
         trackers.joins()
+    trackers.returns()
+    for _ in range(3):
+        trackers.turned()
     trackers.disturbed()
     trackers.stops(False)
     trackers.reverses()
@@ -644,6 +744,9 @@ KINDS: dict[str, Callable[[Trackers], None]] = {
     "lands": Trackers.lands,
     "jumps": Trackers.jumps,
     "joins": Trackers.joins,
+    "returns": Trackers.returns,
+    "turned": Trackers.turned,
+    "distances": Trackers.distances,
     "meets": Trackers.meets,
     "reverses": Trackers.reverses,
     "held": Trackers.held,
