@@ -19,6 +19,7 @@ ENCODER = "encoder axis=0 counts_per_step=4 limit=20"
 PER_TURN = 400
 RPM = 600
 THREAD = f"thread encoder=2 counts_per_turn={PER_TURN} steps=1000,-333 turns=5 top_rpm=700"
+LONGEST = "thread encoder=2 counts_per_turn=65535 steps=1000,-333 turns=65537 top_rpm=70"
 FOLLOWING = "note: FOLLOWING: stopped: following error over its limit, or thread lost the spindle phase\n"
 
 
@@ -89,6 +90,7 @@ def test_a_core_without_encoders_says_so() -> None:
         (THREAD.replace("turns=5", "turns=0"), "NO_COUNTS: "),
         (THREAD.replace("turns=5", "turns=0.01"), "STEEP: "),
         (THREAD.replace("turns=5", "turns=4e9"), "turns must be at most 4294967295 counts"),
+        (LONGEST.replace("65535", "65536"), "turns must be at most 4294967295 counts"),
         (THREAD.replace("top_rpm=700", "top_rpm=0"), "FOLLOW_SPEED: "),
         (THREAD.replace("top_rpm=700", "top_rpm=4e9"), "FOLLOW_SPEED: "),
         (THREAD.replace("top_rpm=700", "top_rpm=2e5"), "PINS_TOO_SLOW: "),
@@ -256,6 +258,12 @@ def test_an_electronic_gear(bench: Bench) -> None:
     bench.ask("run 0.1")
     assert bench.ask("clear") == "ok"
     assert axis_0(bench) == len(steps(bench, 0))
+
+
+def test_the_longest_thread(bench: Bench) -> None:
+    """2^32 - 1 counts are taken."""
+    assert bench.ask(LONGEST) == "ok"
+    assert bench.ask("abort") == "ok"
 
 
 def test_a_thread_without_its_drives(bench: Bench) -> None:

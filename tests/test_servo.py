@@ -216,6 +216,24 @@ def test_it_goes_on_after_a_stop() -> None:
         assert not moves_of(pins, 0)[pins["clock"] > servo.begun].any()
 
 
+@pytest.mark.parametrize("stop", [2000, 20_000])
+def test_a_stop_of_the_driver_brakes_as_the_axis_bears(stop: float) -> None:
+    """From full speed, in the time that the hardest stop of an axis takes, and no sooner."""
+    setting = replace(SETTING, stop=stop)
+    with model_engine(setting.core, setting.clock_hz) as engine:
+        servo = Servo(engine, setting)
+        servo.start()
+        for call in range(400):
+            servo.call([0.00005 * call * call if call < 200 else 2 + 0.02 * (call - 200), 0, 0])
+        servo.driver.call("stop")
+        at = engine.clock
+        servo.wait_until(engine.clock + setting.clock_hz / 2)
+        assert servo.driver.snapshot().cause == Cause.STOP
+        last = servo.pins["clock"][np.flatnonzero(moves_of(servo.pins, 0))[-1]]
+        due = setting.speed / stop * setting.clock_hz
+        assert 0.8 * due < int(last) - at < 1.05 * due + 3000
+
+
 def test_more_lines_than_it_can_keep_stop_it() -> None:
     """A thread that calls without a pause: an error, and the axes come to rest at their commands."""
     with model_engine(SETTING.core, SETTING.clock_hz) as engine:
