@@ -48,6 +48,7 @@ LONG = {
     "bench": "a minute; tests/test_bench.py::test_the_speed_of_an_engine_is_that_of_its_motion",
     "verify": "hours; tests/test_verify.py::test_it_fails_when_a_part_does",
     "test": "has this test",
+    "test-all": "has this test",
 }
 ALL = shown()
 NEWCOMER = shown((paths.root / "README.md", TUTORIAL), in_text=True)
@@ -99,6 +100,7 @@ def recipe(one: Shown) -> list[str]:
 @pytest.mark.first
 def test_a_recipe_of_the_readme_runs(one: Shown) -> None:
     """As a newcomer runs it: the demonstration on both engines, the page, the list of targets."""
+    assert not any("pytest" in line for line in recipe(one)), "this test would run itself"
     for line in recipe(one):
         done = subprocess.run(
             ["bash", "-euc", line], cwd=paths.root, env=environment(), capture_output=True, text=True
