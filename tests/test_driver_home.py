@@ -334,8 +334,10 @@ def test_a_limit_in_the_way_of_home() -> None:
     driver.wait(1)
 
 
-@pytest.mark.parametrize("task", ["home", "probe"])
-@pytest.mark.parametrize(("pin", "level", "name"), [("limit_low", 5, "LIMIT"), ("alarm", 2, "ALARM")])
+@pytest.mark.parametrize(
+    ("task", "pin", "level", "name"),
+    [("probe", "limit_low", 5, "LIMIT"), ("probe", "alarm", 2, "ALARM"), ("home", "alarm", 2, "ALARM")],
+)
 def test_a_stop_behind_the_trigger(task: str, pin: str, level: int, name: str) -> None:
     """However short: the task ends with it, and nothing moves."""
     switch = Switch("home", 0, -2000) if task == "home" else Switch("probe", 2, -300)
@@ -360,6 +362,14 @@ def test_a_stop_behind_the_trigger(task: str, pin: str, level: int, name: str) -
     driver.call("clear")
     driver.call("move_by_speed", by_speed([10, 0, 10, 0]))
     driver.wait(1)
+
+
+def test_a_limit_right_behind_the_home_switch() -> None:
+    """The axis comes up to the switch again, slowly: the limit may stop it, and does not end the home."""
+    machine = machine_of(Switch("home", 0, -2000), Switch("limit_low", 0, -2002))
+    driver = driver_of(machine, limit_soft=False)
+    assert run_home(driver, home()) == "OK"
+    assert_origin(driver, 0, -2000)
 
 
 def test_an_alarm_of_long_ago() -> None:

@@ -59,18 +59,18 @@ void passo_driver_forget_home(struct passo *passo)
 		forget(passo, passo->movers);
 }
 
-/* Axes whose limits may stop a motion of the task that ends: the switches that are sought. */
+/* Axes whose limits may stop a motion of the task that ends: the switches that are sought, and those right
+ * behind the home switch. */
 static uint8_t sought(const struct passo *passo)
 {
 	const struct passo_home *home = passo->task.home;
 
-	if (passo->task.kind != PASSO_TASK_HOME || passo->task.phase == PASSO_HOME_RELEASE
-	    || home->source == PASSO_TRIGGER_SOURCE_HOME)
+	if (passo->task.kind != PASSO_TASK_HOME || passo->task.phase == PASSO_HOME_RELEASE)
 		return 0;
 #ifdef PASSO_CARTESIAN
 	return (uint8_t)(!passo->task.armed << home->axis);
 #else
-	if (passo->task.armed && !passo_driver_squares(home))
+	if (passo->task.armed && (home->source == PASSO_TRIGGER_SOURCE_HOME || !passo_driver_squares(home)))
 		return 0;
 	return (uint8_t)(home->forward | 1u << home->axis);
 #endif
