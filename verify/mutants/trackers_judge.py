@@ -744,8 +744,6 @@ KINDS: dict[str, Callable[[Trackers], None]] = {
     "lands": Trackers.lands,
     "jumps": Trackers.jumps,
     "joins": Trackers.joins,
-    "returns": Trackers.returns,
-    "turned": Trackers.turned,
     "distances": Trackers.distances,
     "meets": Trackers.meets,
     "reverses": Trackers.reverses,
