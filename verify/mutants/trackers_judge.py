@@ -172,7 +172,7 @@ class Trackers(Host):
 
     def away(self) -> None:
         """Trackers move, all in any direction; they will do so for long."""
-        self.apart = [a - b for a, b in zip(self.channel.positions(), self.read(), strict=True)]
+        self.apart = self.of_path()
         for axis in range(self.axes):
             self.limit(axis, *self.limits(longest=28))
             self.go(axis, self.position(axis) + self.rng.choice((-1, 1)) * self.rng.randint(2000, 30_000))
@@ -218,7 +218,7 @@ class Trackers(Host):
         made = [self.steps(self.channel, axis) for axis in range(self.axes)]
         last = max((clock for axis in made for clock, _ in axis), default=0)
         assert last <= until + 2 * TIME, "no step after a stop"
-        apart = [a - b for a, b in zip(self.channel.positions(), self.read(), strict=True)]
+        apart = self.of_path()
         off = [a - b for a, b in zip(apart, self.apart, strict=True)]
         assert all(abs(n) <= most for n in off), f"what a stop drops: {off}"
 
@@ -379,6 +379,25 @@ class Trackers(Host):
         lined = self.parameters.lined
         return (*steps[:lined], *(0 for _ in steps[lined:]))
 
+    def of_path(self) -> list[int]:
+        """Positions without the steps of trackers; only while these rest."""
+        return [a - b for a, b in zip(self.channel.positions(), self.read(), strict=True)]
+
+    def ends(self, lines: Sequence[Line], begun: Sequence[int]) -> None:
+        """Both hands come to rest: the trackers at their targets, the path by its steps behind `begun`."""
+        self.wait(self.channel)
+        self.settle()
+        self.directions(lines)
+        self.landed()
+        moved = [sum(line.steps[axis] for line in lines) for axis in range(self.axes)]
+        due = [a + b for a, b in zip(begun, moved, strict=True)]
+        assert self.of_path() == due, "positions are the sums"
+
+    def turn_in(self, axis: int, setup: int, hold: int) -> None:
+        """Set the times of DIR of an axis."""
+        self.timings[axis] = replace(self.timings[axis], dir_setup=setup, dir_hold=hold)
+        self.link.write(self.channel.axis_base(axis) + r.AXIS_DIR_TIMING, setup << 16 | hold)
+
     def directions(self, lines: Sequence[Line]) -> None:
         """The direction in which the lines have moved the axes last."""
         for line in lines:
@@ -500,14 +519,13 @@ class Trackers(Host):
         """Trackers that turn while their steps wait: for a slow path, and for pins that are slow to turn."""
         rng, before = self.rng, list(self.timings)
         for axis in range(self.axes):
-            setup, hold = rng.randint(200, 500), rng.randint(200, 500)
-            self.timings[axis] = replace(before[axis], dir_setup=setup, dir_hold=hold)
-            self.link.write(self.channel.axis_base(axis) + r.AXIS_DIR_TIMING, setup << 16 | hold)
+            self.turn_in(axis, rng.randint(200, 500), rng.randint(200, 500))
             self.limit(axis, STEP // 3, STEP // 6)
+            self.go(axis, self.position(axis))
         self.alone()
         self.enable((1 << self.axes) - 1)
         for _ in range(3):
-            begun = [a - b for a, b in zip(self.channel.positions(), self.read(), strict=True)]
+            begun = self.of_path()
             gap = rng.randint(1200, 2500)
             sizes = [rng.randint(1, 3) for _ in range(20)]
             ramps = [Ramp(ONE // gap, 0), Ramp(ONE // gap, sum(sizes) * gap // self.tick + 1, last=True)]
@@ -527,29 +545,20 @@ class Trackers(Host):
                 axis = rng.randrange(self.axes)
                 self.go(axis, self.targets[axis][0] + rng.choice((-1, 1)) * rng.randint(1, 2))
                 self.run(rng.randint(1, 1000))
-            self.wait(self.channel)
-            self.settle()
-            self.directions(lines)
-            self.landed()
-            moved = [sum(line.steps[axis] for line in lines) for axis in range(self.axes)]
-            after = [a - b for a, b in zip(self.channel.positions(), self.read(), strict=True)]
-            assert after == [a + b for a, b in zip(begun, moved, strict=True)], "positions are the sums"
+            self.ends(lines, begun)
         self.enable(0)
-        for axis, timing in enumerate(before):
-            self.link.write(
-                self.channel.axis_base(axis) + r.AXIS_DIR_TIMING, timing.dir_setup << 16 | timing.dir_hold
-            )
         self.alone()
-        self.timings = before
+        for axis, timing in enumerate(before):
+            self.turn_in(axis, timing.dir_setup, timing.dir_hold)
 
     def turned(self) -> None:
         """Back from a step against the path, which the pins have not made when the path moves on."""
         rng, axis = self.rng, self.rng.randrange(self.parameters.lined)
         before, way, gap = self.timings[axis], rng.choice((-1, 1)), rng.randint(950, 1050)
-        self.timings[axis] = replace(before, dir_setup=2 * gap, dir_hold=3 * gap)
-        timing = self.channel.axis_base(axis) + r.AXIS_DIR_TIMING
-        self.link.write(timing, 2 * gap << 16 | 3 * gap)
+        self.turn_in(axis, 2 * gap, 3 * gap)
         self.limit(axis, STEP - 1, STEP // 2)
+        for other in range(self.axes):
+            self.go(other, self.position(other))
         here = self.position(axis)
         self.alone()
         self.enable(1 << axis)
@@ -569,9 +578,8 @@ class Trackers(Host):
         assert self.channel.positions() == begun, "positions are the sums"
         self.landed()
         self.enable(0)
-        self.link.write(timing, before.dir_setup << 16 | before.dir_hold)
         self.alone()
-        self.timings[axis] = before
+        self.turn_in(axis, before.dir_setup, before.dir_hold)
 
     def held(self) -> None:
         """While the path stands, trackers move as without one; each to the target of its line's direction."""
@@ -580,7 +588,7 @@ class Trackers(Host):
             self.limit(axis, *self.limits(longest=29))
         self.alone()
         lines, ramps = self.path(rng.randint(60, 100), endless=True)
-        begun = [a - b for a, b in zip(self.channel.positions(), self.read(), strict=True)]
+        begun = self.of_path()
         self.write(self.channel, r.CHANNEL_RATE_TARGET, RATE_ONE, RATE_ONE)
         self.push(self.channel, lines, ramps)
         self.channel.start()
@@ -636,7 +644,7 @@ class Trackers(Host):
             [ramps[0], replace(ramps[1], ticks=60_000)],
         )
         self.write(channel, r.CHANNEL_RATE_TARGET, RATE_ONE, *(rng.randint(300, RATE_ONE) for _ in range(2)))
-        begun = [a - b for a, b in zip(channel.positions(), self.read(), strict=True)]
+        begun = self.of_path()
         self.push(channel, lines, ramps)
         channel.start()
         for _ in range(rng.randint(3, 25)):
@@ -660,7 +668,7 @@ class Trackers(Host):
         made = [self.steps(channel, axis) for axis in range(self.axes)]
         last = max((clock for axis in made for clock, _ in axis), default=0)
         assert last <= (at if hard else stopped) + 4 * TIME, "no step after a stop"
-        found = [a - b - c for a, b, c in zip(channel.positions(), self.read(), begun, strict=True)]
+        found = [a - b for a, b in zip(self.of_path(), begun, strict=True)]
         done = [0] * self.axes
         slack = DROPPED + 1 if hard else 1
         for substep in range(self.engine.clock - self.since):
@@ -687,17 +695,11 @@ class Trackers(Host):
         self.settle()
         self.landed()
         for _ in range(3):
-            before = [a - b for a, b in zip(self.channel.positions(), self.read(), strict=True)]
+            before = self.of_path()
             lines, ramps = self.path(rng.randint(50, 300))
             self.push(self.channel, lines, ramps)
             self.channel.start()
-            self.wait(self.channel)
-            self.settle()
-            self.directions(lines)
-            self.landed()
-            moved = [sum(line.steps[axis] for line in lines) for axis in range(self.axes)]
-            after = [a - b for a, b in zip(self.channel.positions(), self.read(), strict=True)]
-            assert after == [a + b for a, b in zip(before, moved, strict=True)], "positions are the sums"
+            self.ends(lines, before)
         self.enable(0)
         self.alone()
 
@@ -744,6 +746,8 @@ KINDS: dict[str, Callable[[Trackers], None]] = {
     "lands": Trackers.lands,
     "jumps": Trackers.jumps,
     "joins": Trackers.joins,
+    "returns": Trackers.returns,
+    "turned": Trackers.turned,
     "distances": Trackers.distances,
     "meets": Trackers.meets,
     "reverses": Trackers.reverses,
