@@ -90,17 +90,29 @@ class Motions:
         """Write registers of a channel."""
         self.link.write(channel.base + place, *words)
 
-    def push(self, channel: Channel, lines: Sequence[Line], ramps: Sequence[Ramp]) -> None:
+    def push(
+        self,
+        channel: Channel,
+        lines: Sequence[Line],
+        ramps: Sequence[Ramp],
+        outputs: Sequence[r.LineOutputWord] = (),
+    ) -> None:
         """Queue a motion, which does not begin yet."""
         self.link.write(r.ADDRESS_RUN, 0)
-        self.queue(channel, lines, ramps)
+        self.queue(channel, lines, ramps, outputs)
         room = 1 << self.parameters.line_queue_log2, 1 << self.parameters.ramp_queue_log2
         assert channel.room() == (room[0] - len(lines), room[1] - len(ramps)), "room of what is queued"
         self.events = self.engine.drain()[-1:]
 
-    def queue(self, channel: Channel, lines: Sequence[Line], ramps: Sequence[Ramp]) -> None:
+    def queue(
+        self,
+        channel: Channel,
+        lines: Sequence[Line],
+        ramps: Sequence[Ramp],
+        outputs: Sequence[r.LineOutputWord] = (),
+    ) -> None:
         """Queue lines and ramps."""
-        channel.push_lines([to_line(line) for line in lines])
+        channel.push_lines([to_line(line) for line in lines], outputs)
         channel.push_ramps([to_ramp(ramp) for ramp in ramps])
 
     def run(self, clocks: int) -> None:

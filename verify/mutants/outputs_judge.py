@@ -11,7 +11,6 @@ from passo.host import RATE_ONE
 from passo.registers import Cause
 
 from tests.helpers.closed_form import ONE, Line, Ramp, substep_clocks
-from tests.helpers.motions import to_line, to_ramp
 from verify.mutants.engine_judge import Check
 from verify.mutants.motions_judge import Motions
 
@@ -77,10 +76,7 @@ class Outputs(Motions):
         lines = [Line(m, (m,) * axes, last=n == 2) for n, m in enumerate(substeps)]
         ticks = sum(substeps) * gap // self.tick + 2
         ramps = [Ramp(velocity, 0), Ramp(velocity, ticks, last=True)]
-        self.link.write(r.ADDRESS_RUN, 0)
-        channel.push_lines([to_line(line) for line in lines], words)
-        channel.push_ramps([to_ramp(ramp) for ramp in ramps])
-        self.events = self.engine.drain()[-1:]
+        self.push(channel, lines, ramps, words)
         channel.start()
         self.wait(channel)
         begin, end = self.runs(channel)
@@ -111,10 +107,7 @@ class Outputs(Motions):
         ]
         lines = [Line(m, (m,) * axes, last=n == places - 1) for n in range(places)]
         ramps = [Ramp(ONE // gap, 0), Ramp(ONE // gap, m * places * gap // self.tick + 2, last=True)]
-        self.link.write(r.ADDRESS_RUN, 0)
-        channel.push_lines([to_line(line) for line in lines], words)
-        channel.push_ramps([to_ramp(ramp) for ramp in ramps])
-        self.events = self.engine.drain()[-1:]
+        self.push(channel, lines, ramps, words)
         channel.start()
         self.wait(channel)
         begin, _ = self.runs(channel)
@@ -138,10 +131,7 @@ class Outputs(Motions):
         fast = ONE // 30
         ramps = [Ramp(fast, 0), Ramp(fast, 2), Ramp(velocity << 16, 0), Ramp(velocity << 16, 60_000)]
         word = r.LineOutputWord(levels=0, power=power, proportional=True, raster=False)
-        self.link.write(r.ADDRESS_RUN, 0)
-        channel.push_lines([to_line(Line(1 << 29, (0,) * axes, last=True))], [word])
-        channel.push_ramps([to_ramp(ramp) for ramp in ramps])
-        self.events = self.engine.drain()[-1:]
+        self.push(channel, [Line(1 << 29, (0,) * axes, last=True)], ramps, [word])
         channel.start()
         self.engine.run(3 * self.tick)
         self.write(channel, r.CHANNEL_RATE_TARGET, rate)
