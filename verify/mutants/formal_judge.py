@@ -144,9 +144,10 @@ class Problem:
 
         One that fails in every clock breaks no induction, but the first clocks.
         """
-        induction = self._run(number, limit, "-i")
-        first = None if induction else self._run(number, limit)
-        return induction or first or (None if None in (induction, first) else [])
+        if induction := self._run(number, limit, "-i"):
+            return induction
+        first = self._run(number, limit)
+        return first or (induction if first is not None else None)
 
     def _run(self, number: int, limit: int, *way: str) -> list[str] | None:
         """Of the induction, or of the clocks from the first one on that it needs."""
