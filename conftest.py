@@ -5,11 +5,11 @@ Of each test it has as many cases as take SECONDS by tests/times.txt, which list
 of one marked sample(n) it has n. They are evenly spread, and PASSO_SEED chooses them.
 """
 
-import os
 from collections import defaultdict
 from pathlib import Path
 
 import pytest
+from passo.random_cases import seed
 
 SECONDS = 4
 TIMES = Path(__file__).parent / "tests" / "times.txt"
@@ -68,14 +68,14 @@ def pytest_configure(config: pytest.Config) -> None:
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Some tests start before the rest: at the end, the other workers would wait for them."""
     if config.getoption("--short"):
-        tests, times, seed = defaultdict(list), listed(), int(os.environ.get("PASSO_SEED", "1"))
+        tests, times = defaultdict(list), listed()
         for item in items:
             tests[test_of(item.nodeid)].append(item)
         short = set[pytest.Item]()
         for test, cases in tests.items():
             mark = cases[0].get_closest_marker("sample")
             kept = mark.args[0] if mark else int(SECONDS / times[test]) if test in times else len(cases)
-            short |= {cases[place] for place in chosen(len(cases), kept, seed)}
+            short |= {cases[place] for place in chosen(len(cases), kept, seed())}
         config.hook.pytest_deselected(items=[item for item in items if item not in short])
         items[:] = [item for item in items if item in short]
     items.sort(key=lambda item: item.get_closest_marker("first") is None)
