@@ -106,11 +106,13 @@ enum passo_error passo_thread(struct passo *passo, const struct passo_thread *th
 		error = PASSO_ERROR_ARGUMENT_POINTER;
 	if (error == PASSO_OK && thread->encoder >= passo->axes)
 		error = PASSO_ERROR_ARGUMENT_AXIS;
-	for (unsigned i = error == PASSO_OK ? passo->machine.axes : PASSO_AXES_MAX;
-	    error == PASSO_OK && i < PASSO_AXES_MAX; i++)
-		error = thread->steps[i] != 0 ? PASSO_ERROR_ARGUMENT_AXIS : PASSO_OK;
-	if (error == PASSO_OK)
-		error = plan_thread(passo, thread, &plan, &scale);
+	if (error != PASSO_OK)
+		return error;
+	for (unsigned i = passo->machine.axes; i < PASSO_AXES_MAX; i++) {
+		if (thread->steps[i] != 0)
+			return PASSO_ERROR_ARGUMENT_AXIS;
+	}
+	error = plan_thread(passo, thread, &plan, &scale);
 	if (error != PASSO_OK)
 		return error;
 	const struct passo_channel_follow follow = {
